@@ -1,0 +1,18 @@
+//! Rays, boxes and triangles, and the tests between them. Everything here is pure arithmetic on
+//! 32-bit floats by the rules that ARCHITECTURE.md states; sums, areas and costs are 64-bit.
+
+mod aabb;
+mod degenerate;
+pub mod num;
+mod overlap;
+mod ray;
+mod slabs;
+pub mod space;
+pub mod tri;
+
+pub use aabb::{Aabb, Axis};
+pub use degenerate::has_zero_area;
+pub use overlap::triangle_overlaps_box;
+pub use ray::Ray;
+pub use slabs::Slabs;
+pub use space::Space;

@@ -1,0 +1,160 @@
+//! The space that structures work in: the scene scaled by a power of two to an extent of about 1,
+//! so that nothing over- or underflows however large or small the model is.
+//!
+//! A ray is brought there in three exact or bounded steps:
+//! 1. the origin is scaled (exact but for denormals);
+//! 2. the direction is scaled by the power of two that brings its greatest component into (1/2, 1],
+//!    and t by its inverse (exact);
+//! 3. an origin farther than [`FAR`] extents away is moved along the ray to within a few extents
+//!    of the scene, worked out in 64 bits and rounded once. The displacement, half an ulp of the
+//!    new origin, is below the triangle tests' own error; without it their error would grow with
+//!    the distance. All structures get the same moved ray, so they still agree to the bit.
+
+use super::num::narrow;
+use super::{Aabb, Ray};
+use glam::{DVec3, Vec3};
+
+/// Beyond this many extents from the scene's box an origin is moved closer.
+pub const FAR: f64 = 8.0;
+
+/// The map from the world to the scaled space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Space {
+    /// Scaled coordinate = world coordinate times this power of two.
+    scale: f64,
+    /// The bounds of the scene, scaled.
+    bounds: Aabb,
+}
+
+/// A ray in the scaled space, with what turns its t back into the world's.
+#[derive(Clone, Copy, Debug)]
+pub struct Entered {
+    /// The ray as the structures see it.
+    pub ray: Ray,
+    t_offset: f64,
+    t_scale: f64,
+}
+
+impl Entered {
+    /// The world's t of a t of [`Self::ray`].
+    #[inline]
+    pub fn world_t(&self, t: f32) -> f32 {
+        narrow((f64::from(t) + self.t_offset) * self.t_scale)
+    }
+}
+
+impl Space {
+    /// The space for a scene that lies in `world_bounds` (finite, or empty).
+    pub fn new(world_bounds: &Aabb) -> Self {
+        if world_bounds.is_empty() {
+            return Self { scale: 1.0, bounds: Aabb { min: Vec3::ZERO, max: Vec3::ZERO } };
+        }
+        let size = (world_bounds.max.as_dvec3() - world_bounds.min.as_dvec3()).max_element();
+        let far = world_bounds.min.as_dvec3().abs().max(world_bounds.max.as_dvec3().abs()).max_element();
+        let extent = if size > 0.0 { size } else { far };
+        let scale = if extent > 0.0 { power_of_two_at_most(1.0 / extent) } else { 1.0 };
+        // Far from the origin the coordinates outgrow the extent; they must still be finite.
+        let scale = if far * scale > 1e30 { power_of_two_at_most(1e30 / far) } else { scale };
+        let mut space = Self { scale, bounds: *world_bounds };
+        space.bounds = Aabb { min: space.point(world_bounds.min), max: space.point(world_bounds.max) };
+        space
+    }
+
+    /// The power of two that world lengths are multiplied by.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The scene's bounds in this space.
+    pub fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// A world point in this space.
+    #[inline]
+    pub fn point(&self, p: Vec3) -> Vec3 {
+        (p.as_dvec3() * self.scale).as_vec3()
+    }
+
+    /// A point of this space in the world.
+    #[inline]
+    pub fn world_point(&self, p: Vec3) -> Vec3 {
+        (p.as_dvec3() / self.scale).as_vec3()
+    }
+
+    /// A valid world ray in this space.
+    #[inline]
+    pub fn enter(&self, ray: &Ray) -> Entered {
+        let origin = ray.origin.as_dvec3() * self.scale;
+        let largest = ray.dir.abs().max_element();
+        let up = power_of_two_at_most(1.0 / f64::from(largest));
+        let dir = ray.dir.as_dvec3() * up;
+        // world t = t of this space * t_scale: lengths grow by `scale`, the direction by `up`.
+        let t_scale = up / self.scale;
+        let t_offset = self.approach(origin, dir);
+        let moved = if t_offset > 0.0 { origin + dir * t_offset } else { origin };
+        let t = |world: f32| narrow(f64::from(world) / t_scale - t_offset);
+        let tmin = t(ray.tmin).max(0.0);
+        Entered { ray: Ray { origin: moved.as_vec3(), dir: dir.as_vec3(), tmin, tmax: t(ray.tmax) }, t_offset, t_scale }
+    }
+
+    /// How far along the ray to move a far origin: to two extents before the point nearest to the
+    /// scene's centre; 0 for an origin that is near.
+    fn approach(&self, origin: DVec3, dir: DVec3) -> f64 {
+        let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
+        let extent = (max - min).max_element().max(f64::MIN_POSITIVE);
+        let away = (min - origin).max(origin - max).max_element();
+        if away <= FAR * extent {
+            return 0.0;
+        }
+        let along = (0.5 * (min + max) - origin).dot(dir) / dir.length_squared();
+        let before = 2.0 * extent / dir.length();
+        // The box lies within one diagonal of the nearest point; the rest is margin.
+        (along - 2.0 * before).max(0.0)
+    }
+}
+
+/// The greatest power of two that is at most `x` (positive and finite; a normal number).
+fn power_of_two_at_most(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7FF0_0000_0000_0000;
+    f64::from_bits(x.clamp(f64::MIN_POSITIVE, 1e300).to_bits() & EXPONENT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scaling_by_a_power_of_two_changes_nothing_but_the_scale() {
+        let bounds = Aabb { min: Vec3::new(-1.0, 0.0, 2.0), max: Vec3::new(3.0, 1.0, 2.5) };
+        let ray = Ray { origin: Vec3::new(0.1, 5.0, -2.0), dir: Vec3::new(0.3, -0.7, 0.2), tmin: 0.5, tmax: 100.0 };
+        let here = Space::new(&bounds).enter(&ray);
+        for k in [-90, -30, 17, 90] {
+            let s = 2.0f32.powi(k);
+            let scaled = Space::new(&Aabb { min: bounds.min * s, max: bounds.max * s });
+            let there = scaled.enter(&Ray { origin: ray.origin * s, dir: ray.dir * s, ..ray });
+            assert_eq!(here.ray, there.ray);
+            assert_eq!(here.world_t(0.7), there.world_t(0.7));
+        }
+    }
+
+    #[test]
+    fn a_far_origin_is_moved_close_and_t_is_put_back() {
+        let space = Space::new(&Aabb { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) });
+        let entered = space.enter(&Ray::new(Vec3::new(1e6, 0.25, 0.0), Vec3::NEG_X));
+        assert!(entered.ray.origin.length() < FAR as f32);
+        let t = entered.ray.origin.x - 0.5; // to the plane x = 1, at 0.5 once scaled
+        assert_eq!(entered.world_t(t), 1e6 - 1.0);
+        assert_eq!(entered.ray.origin.y, 0.125);
+    }
+
+    #[test]
+    fn extremes_stay_finite() {
+        for far in [f32::MAX, 1e-45, 1e30] {
+            let space = Space::new(&Aabb { min: Vec3::ZERO, max: Vec3::splat(far) });
+            assert!(space.bounds().max.is_finite() && space.bounds().max.x >= 0.25, "{far}");
+            let entered = space.enter(&Ray::new(Vec3::ZERO, Vec3::new(1e-45, f32::MAX, 0.0)));
+            assert!(entered.ray.is_valid());
+        }
+    }
+}

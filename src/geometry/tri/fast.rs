@@ -1,0 +1,50 @@
+//! Möller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection".
+
+use super::{TestKind, TriHit, TriTest};
+use crate::geometry::{Aabb, Ray, Slabs};
+use glam::Vec3;
+
+/// Few operations, boxes tested as they are. Rays through shared edges may slip through.
+#[derive(Clone, Copy, Debug)]
+pub struct Fast {
+    origin: Vec3,
+    dir: Vec3,
+    slabs: Slabs,
+}
+
+impl TriTest for Fast {
+    const KIND: TestKind = TestKind::Fast;
+
+    #[inline(always)]
+    fn prepare(ray: &Ray, _: &Aabb) -> Self {
+        Self { origin: ray.origin, dir: ray.dir, slabs: Slabs::exact(ray) }
+    }
+
+    #[inline(always)]
+    fn slabs(&self) -> &Slabs {
+        &self.slabs
+    }
+
+    #[inline(always)]
+    fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
+        let (e1, e2) = (tri[1] - tri[0], tri[2] - tri[0]);
+        let p = self.dir.cross(e2);
+        let det = e1.dot(p);
+        if det == 0.0 {
+            return None;
+        }
+        let inv = 1.0 / det;
+        let s = self.origin - tri[0];
+        let u = s.dot(p) * inv;
+        if !(0.0..=1.0).contains(&u) {
+            return None;
+        }
+        let q = s.cross(e1);
+        let v = self.dir.dot(q) * inv;
+        if !(v >= 0.0 && u + v <= 1.0) {
+            return None;
+        }
+        let t = e2.dot(q) * inv;
+        t.is_finite().then_some(TriHit { t, u, v })
+    }
+}

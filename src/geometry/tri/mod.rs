@@ -1,0 +1,159 @@
+//! Ray-triangle tests. A test is a type parameter of every structure; each brings the box test
+//! that goes with it. A new test is one file here and one line in [`TestKind`].
+//!
+//! All tests share the rule that makes every structure agree: a triangle is hit only if the test
+//! accepts and the ray's interval in the triangle's own box is not empty; t is clamped into that
+//! interval, and only then compared with the closed `[tmin, tmax]`.
+
+mod fast;
+mod watertight;
+
+pub use fast::Fast;
+pub use watertight::Watertight;
+
+use super::{Aabb, Ray, Slabs};
+use glam::Vec3;
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriHit {
+    /// In units of the ray's direction.
+    pub t: f32,
+    /// Barycentric weight of the second corner.
+    pub u: f32,
+    /// Barycentric weight of the third corner.
+    pub v: f32,
+}
+
+/// A ray-triangle test and the box test that goes with it.
+pub trait TriTest: Copy + Send + Sync + 'static {
+    /// Which one it is, for the outside.
+    const KIND: TestKind;
+
+    /// What the test needs of a ray, worked out once a ray; `bounds` is the scene's box.
+    fn prepare(ray: &Ray, bounds: &Aabb) -> Self;
+
+    /// The box test's part.
+    fn slabs(&self) -> &Slabs;
+
+    /// The bare test, without regard to `[tmin, tmax]` or the triangle's box. Two-sided.
+    fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit>;
+
+    /// The whole test, by the rule above.
+    #[inline(always)]
+    fn hit(&self, tri: &[Vec3; 3], tmin: f32, tmax: f32) -> Option<TriHit> {
+        let hit = self.meet(tri)?;
+        let (entry, exit) = self.slabs().interval(&Aabb::of_triangle(tri));
+        if entry > exit {
+            return None;
+        }
+        let t = if hit.t < entry { entry } else { hit.t };
+        let t = if t > exit { exit } else { t };
+        (tmin <= t && t <= tmax).then_some(TriHit { t, ..hit })
+    }
+}
+
+/// The tests by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TestKind {
+    /// [`Watertight`]: no ray slips through a shared edge. The default.
+    #[default]
+    Watertight,
+    /// [`Fast`]: fewer operations, but rays through edges may slip through.
+    Fast,
+}
+
+impl TestKind {
+    /// Every test, the default first.
+    pub const ALL: [Self; 2] = [Self::Watertight, Self::Fast];
+
+    /// The name used on the command line and in files.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Watertight => "watertight",
+            Self::Fast => "fast",
+        }
+    }
+
+    /// One sentence for the user.
+    pub const fn help(self) -> &'static str {
+        match self {
+            Self::Watertight => "Woop, Benthin and Wald 2013: rays through shared edges and vertices never slip through.",
+            Self::Fast => "Möller and Trumbore 1997: fewer operations; rays through shared edges may slip through.",
+        }
+    }
+}
+
+impl std::str::FromStr for TestKind {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|kind| kind.id() == s);
+        found.ok_or_else(|| format!("there is no triangle test '{s}': use watertight or fast"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOUNDS: Aabb = Aabb { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+    const TRI: [Vec3; 3] = [Vec3::new(0.0, 0.0, 0.5), Vec3::new(1.0, 0.0, 0.5), Vec3::new(0.0, 1.0, 0.5)];
+
+    fn shoot<T: TriTest>(origin: Vec3, dir: Vec3) -> Option<TriHit> {
+        T::prepare(&Ray::new(origin, dir), &BOUNDS).hit(&TRI, 0.0, f32::INFINITY)
+    }
+
+    fn knows_the_simple_answers<T: TriTest>() {
+        for side in [-1.0, 1.0] {
+            let hit = shoot::<T>(Vec3::new(0.25, 0.5, 0.5 - side), Vec3::new(0.0, 0.0, 2.0 * side));
+            assert_eq!(hit, Some(TriHit { t: 0.5, u: 0.25, v: 0.5 }));
+        }
+        assert_eq!(shoot::<T>(Vec3::new(0.75, 0.5, 0.0), Vec3::Z), None, "outside");
+        assert_eq!(shoot::<T>(Vec3::new(0.25, 0.25, 1.0), Vec3::Z), None, "behind");
+        assert_eq!(shoot::<T>(Vec3::new(-1.0, 0.25, 0.5), Vec3::X), None, "in the plane");
+    }
+
+    #[test]
+    fn fast_knows_the_simple_answers() {
+        knows_the_simple_answers::<Fast>();
+    }
+
+    #[test]
+    fn watertight_knows_the_simple_answers() {
+        knows_the_simple_answers::<Watertight>();
+    }
+
+    #[test]
+    fn the_interval_is_closed() {
+        let ray = Watertight::prepare(&Ray::new(Vec3::new(0.25, 0.25, 0.0), Vec3::Z), &BOUNDS);
+        assert!(ray.hit(&TRI, 0.5, 0.5).is_some());
+        assert!(ray.hit(&TRI, 0.0, 0.5f32.next_down()).is_none());
+        assert!(ray.hit(&TRI, 0.5f32.next_up(), 1.0).is_none());
+    }
+
+    /// A fan of thin triangles around a point: a ray aimed at the hub or at any spoke must hit.
+    #[test]
+    fn watertight_leaves_no_gap_between_neighbours() {
+        let hub = Vec3::new(0.123, -0.456, 0.1);
+        let rim: Vec<Vec3> = (0..97u8)
+            .map(|i| {
+                let a = f32::from(i) / 97.0 * std::f32::consts::TAU;
+                Vec3::new(a.cos(), a.sin(), (a * 3.0).sin() * 0.3)
+            })
+            .collect();
+        let mut rays = 0;
+        for i in 0..97 {
+            for step in 0..200u8 {
+                let target = hub.lerp(rim[i], f32::from(step) / 200.0);
+                let origin = Vec3::new(0.4 - f32::from(step) / 150.0, 0.3, 2.0);
+                let ray = Watertight::prepare(&Ray::new(origin, target - origin), &BOUNDS);
+                let any = (0..97).any(|k| ray.hit(&[hub, rim[k], rim[(k + 1) % 97]], 0.0, f32::INFINITY).is_some());
+                assert!(any, "slipped through spoke {i} at {target}");
+                rays += 1;
+            }
+        }
+        assert_eq!(rays, 97 * 200);
+    }
+}

@@ -1,0 +1,12 @@
+//! Boxwood: see, race and measure the structures that make ray tracing fast.
+//!
+//! The layers, each using only those before it (`tests/layering.rs` holds them to it):
+//!
+//! ```text
+//! task, sys → geometry, simd → scene → accel → render → lab → job → {cli, viewer} → main
+//! ```
+
+pub mod geometry;
+pub mod scene;
+pub mod sys;
+pub mod task;

@@ -1,0 +1,2 @@
+//! Boxwood.
+fn main() {}

@@ -1,0 +1,47 @@
+//! What a model holds, however it was stored: meshes, where they stand, what they are made of, and
+//! a camera to begin with. Loading fills it ([`load`]), or a generator does ([`builtin`]);
+//! [`Geometry`] is what the acceleration structures see of it.
+
+pub mod builtin;
+mod camera;
+mod error;
+mod geometry;
+pub mod load;
+mod material;
+mod mesh;
+mod source;
+
+pub use camera::{Camera, Frame, Projection};
+pub use error::{LoadError, Reason};
+pub use geometry::{Geometry, PrimRef};
+pub use material::Material;
+pub use mesh::{Instance, Mesh};
+pub use source::{LoadCx, open};
+
+use glam::Vec3;
+
+/// A whole model.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// What the user knows it by: the file's path as given, or `builtin:NAME?...`.
+    pub name: String,
+    /// The triangle meshes, in file order.
+    pub meshes: Vec<Mesh>,
+    /// Where meshes stand, in node order. A mesh may be placed many times, or never.
+    pub instances: Vec<Instance>,
+    /// What meshes are made of; a mesh refers to them by index.
+    pub materials: Vec<Material>,
+    /// The direction that is up: what the orbiting camera keeps upright.
+    pub up: Vec3,
+    /// A view that suits the model; without one the whole model is framed.
+    pub camera: Option<Camera>,
+    /// What could not be read, or was left out, in words for the user. Each is one sentence.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// The number of triangles when every instance is counted.
+    pub fn triangle_count(&self) -> u64 {
+        self.instances.iter().map(|i| self.meshes[i.mesh].triangles.len() as u64).sum()
+    }
+}

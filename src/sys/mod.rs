@@ -1,0 +1,28 @@
+//! What the machine is: its memory and its processor. System calls live here and nowhere else.
+
+/// Bytes of memory that this process may count on: the machine's, or the container's where that
+/// is smaller. 4 GiB where neither can be read.
+pub fn memory_bytes() -> u64 {
+    const UNKNOWN: u64 = 4 << 30;
+    let Ok(mut system) = sysinfo::System::new() else { return UNKNOWN };
+    system.refresh_memory();
+    let machine = system.total_memory();
+    let container = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
+    match machine.min(container) {
+        0 | u64::MAX => UNKNOWN,
+        bytes => bytes,
+    }
+}
+
+/// The processor's name as the system tells it, `unknown` where it does not.
+pub fn cpu_name() -> String {
+    let Ok(mut system) = sysinfo::System::new() else { return "unknown".to_owned() };
+    system.refresh_cpu_list(sysinfo::CpuRefreshKind::nothing());
+    let brand = system.cpus().first().map(|cpu| cpu.brand().trim().to_owned());
+    brand.filter(|name| !name.is_empty()).unwrap_or_else(|| "unknown".to_owned())
+}
+
+/// The number of cores this process may use.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}

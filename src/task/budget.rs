@@ -1,0 +1,112 @@
+//! How much memory the work may take: predicted and asked for first, charged as it grows where it
+//! cannot be predicted, and given back when the charge is dropped.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A limit in bytes and what is charged against it. Clones share both.
+#[derive(Clone, Debug)]
+pub struct Budget(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    limit: u64,
+    used: AtomicU64,
+}
+
+/// More was asked for than is left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("it needs {} and {} of the memory budget of {} is left", mib(*asked), mib(*left), mib(*limit))]
+pub struct OverBudget {
+    /// Bytes asked for.
+    pub asked: u64,
+    /// Bytes that were left.
+    pub left: u64,
+    /// Bytes of the whole budget.
+    pub limit: u64,
+}
+
+fn mib(bytes: u64) -> String {
+    format!("{:.1} MiB", bytes as f64 / (1024.0 * 1024.0))
+}
+
+/// Bytes held against a [`Budget`]; dropping it gives them back.
+#[derive(Debug)]
+pub struct Charge {
+    budget: Budget,
+    bytes: u64,
+}
+
+impl Budget {
+    /// A budget of `limit` bytes.
+    pub fn new(limit: u64) -> Self {
+        Self(Arc::new(Inner { limit, used: AtomicU64::new(0) }))
+    }
+
+    /// No limit: for tests and tools that know what they do.
+    pub fn unlimited() -> Self {
+        Self::new(u64::MAX)
+    }
+
+    /// Half of what the machine, or the container the process runs in, has.
+    pub fn half_of_machine() -> Self {
+        Self::new(crate::sys::memory_bytes() / 2)
+    }
+
+    /// Bytes of the whole budget.
+    pub fn limit(&self) -> u64 {
+        self.0.limit
+    }
+
+    /// Bytes charged now.
+    pub fn used(&self) -> u64 {
+        self.0.used.load(Ordering::Relaxed)
+    }
+
+    /// Takes `bytes`, or says by how much they do not fit.
+    pub fn charge(&self, bytes: u64) -> Result<Charge, OverBudget> {
+        let fits = |used: u64| used.checked_add(bytes).filter(|sum| *sum <= self.0.limit);
+        match self.0.used.try_update(Ordering::Relaxed, Ordering::Relaxed, fits) {
+            Ok(_) => Ok(Charge { budget: self.clone(), bytes }),
+            Err(used) => Err(OverBudget { asked: bytes, left: self.0.limit - used, limit: self.0.limit }),
+        }
+    }
+}
+
+impl Charge {
+    /// Takes `more` bytes on top.
+    pub fn grow(&mut self, more: u64) -> Result<(), OverBudget> {
+        let extra = self.budget.charge(more)?;
+        self.bytes += more;
+        std::mem::forget(extra); // its bytes are this charge's now
+        Ok(())
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
+impl Drop for Charge {
+    fn drop(&mut self) {
+        self.budget.0.used.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn charges_are_refused_past_the_limit_and_given_back() {
+        let budget = Budget::new(100);
+        let mut held = budget.charge(60).expect("fits");
+        assert_eq!(budget.charge(50).expect_err("does not fit").left, 40);
+        held.grow(40).expect("fits exactly");
+        assert_eq!((budget.used(), held.bytes()), (100, 100));
+        drop(held);
+        assert_eq!(budget.used(), 0);
+        assert!(budget.charge(u64::MAX).is_err());
+    }
+}
