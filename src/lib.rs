@@ -6,6 +6,7 @@
 //! task, sys → geometry, simd → scene → accel → render → lab → job → {cli, viewer} → main
 //! ```
 
+pub mod accel;
 pub mod geometry;
 pub mod scene;
 pub mod sys;

@@ -1,0 +1,64 @@
+//! The best hit so far of one ray: the rule for ties in one place.
+
+use super::hit::{PrimHit, Query};
+use super::probe::Probe;
+use crate::geometry::tri::TriTest;
+use crate::scene::PrimRef;
+use glam::Vec3;
+
+/// Starts as the end of the ray's interval, which no triangle holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Best {
+    hit: PrimHit,
+    tmin: f32,
+}
+
+const NONE: PrimRef = PrimRef::MAX;
+
+impl Best {
+    /// Nothing found yet in `[tmin, tmax]`.
+    #[inline(always)]
+    pub const fn new(tmin: f32, tmax: f32) -> Self {
+        Self { hit: PrimHit { t: tmax, u: 0.0, v: 0.0, prim: NONE }, tmin }
+    }
+
+    /// Nothing beyond this t is of interest.
+    #[inline(always)]
+    pub const fn t(&self) -> f32 {
+        self.hit.t
+    }
+
+    /// The start of the ray's interval.
+    #[inline(always)]
+    pub const fn tmin(&self) -> f32 {
+        self.tmin
+    }
+
+    /// What was found.
+    #[inline(always)]
+    pub fn found(&self) -> Option<PrimHit> {
+        (self.hit.prim != NONE).then_some(self.hit)
+    }
+
+    /// Tests a triangle and keeps the hit if it is closer, or as close with a lower index. True if
+    /// the search is over, which happens for [`Query::ANY`] only.
+    #[inline(always)]
+    pub fn test<T: TriTest, Q: Query, P: Probe>(
+        &mut self,
+        ray: &T,
+        tri: &[Vec3; 3],
+        prim: PrimRef,
+        query: &Q,
+        probe: &mut P,
+    ) -> bool {
+        probe.prim();
+        let Some(hit) = ray.hit(tri, self.tmin, self.hit.t) else { return false };
+        let hit = PrimHit { t: hit.t, u: hit.u, v: hit.v, prim };
+        let closer = hit.t < self.hit.t || prim < self.hit.prim;
+        if closer && query.accept(&hit) {
+            self.hit = hit;
+            return Q::ANY;
+        }
+        false
+    }
+}

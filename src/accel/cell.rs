@@ -1,0 +1,156 @@
+//! A node or cell as the outside sees it. One way to walk feeds overlays, the tree, statistics and
+//! validation; children are made on demand, so a structure of ten million nodes costs what is
+//! looked at.
+
+use std::ops::ControlFlow;
+
+use crate::geometry::{Aabb, Axis};
+use crate::scene::PrimRef;
+
+/// Names a cell within its structure; `instance` is 0 where there is no top level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct CellId {
+    /// The instance it belongs to.
+    pub instance: u32,
+    /// Its number within the structure.
+    pub node: u32,
+}
+
+/// What bounds a cell, in the scaled space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// A box with faces parallel to the axes.
+    Box(Aabb),
+}
+
+impl Shape {
+    /// The tightest box around it.
+    pub const fn bounds(&self) -> &Aabb {
+        match self {
+            Self::Box(b) => b,
+        }
+    }
+}
+
+/// The plane that divides a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Split {
+    /// The axis it is perpendicular to.
+    pub axis: Axis,
+    /// Where it crosses the axis, in the scaled space.
+    pub pos: f32,
+}
+
+/// What a cell holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellKind {
+    /// Other cells.
+    Inner,
+    /// Primitives.
+    Leaf {
+        /// How many references.
+        prims: u32,
+    },
+}
+
+/// A node or cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Which one.
+    pub id: CellId,
+    /// Steps from the root, which has 0.
+    pub depth: u32,
+    /// What bounds it.
+    pub shape: Shape,
+    /// The plane that divides it, where one does.
+    pub split: Option<Split>,
+    /// What it holds.
+    pub kind: CellKind,
+}
+
+impl Cell {
+    /// Whether it holds primitives rather than cells.
+    pub const fn is_leaf(&self) -> bool {
+        matches!(self.kind, CellKind::Leaf { .. })
+    }
+
+    /// How many references it holds itself.
+    pub const fn prims(&self) -> u32 {
+        match self.kind {
+            CellKind::Inner => 0,
+            CellKind::Leaf { prims } => prims,
+        }
+    }
+}
+
+/// A part of a structure's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct MemoryPart {
+    /// Of what: `nodes`, `references`, `packed triangles`.
+    pub name: &'static str,
+    /// How much.
+    pub bytes: u64,
+}
+
+/// How a structure's cells relate; statistics and overlays read it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Layout {
+    /// Nodes bound their children, which may overlap; every triangle is in one leaf.
+    Hierarchy,
+    /// Cells divide space and do not overlap; a triangle is in every leaf it overlaps.
+    Partition,
+    /// The same, but all cells are children of the root, and the ray steps from cell to cell.
+    Flat {
+        /// Cells along each axis.
+        resolution: [u32; 3],
+        /// A cell also holds triangles that come this near to it, in the scaled space.
+        slack: f32,
+    },
+}
+
+/// What overlays, the tree, statistics and validation walk.
+pub trait Cells: Send + Sync {
+    /// The cell that holds everything.
+    fn root(&self) -> Cell;
+
+    /// Calls `each` for the children of a cell, near the root of memory first, until it breaks.
+    fn children(&self, cell: &Cell, each: &mut dyn FnMut(Cell) -> ControlFlow<()>);
+
+    /// Calls `each` for every reference that a leaf holds.
+    fn prims(&self, cell: &Cell, each: &mut dyn FnMut(PrimRef));
+
+    /// How the cells relate.
+    fn layout(&self) -> Layout;
+
+    /// Bytes by part, the shared geometry not counted.
+    fn memory(&self) -> Vec<MemoryPart>;
+}
+
+/// Walks all cells below and including the root, parents first, until `visit` breaks or says not to
+/// go deeper.
+pub fn walk(cells: &dyn Cells, visit: &mut dyn FnMut(&Cell) -> ControlFlow<(), Descend>) {
+    let mut stack = vec![cells.root()];
+    let mut children = Vec::new();
+    while let Some(cell) = stack.pop() {
+        match visit(&cell) {
+            ControlFlow::Break(()) => return,
+            ControlFlow::Continue(Descend::No) => {}
+            ControlFlow::Continue(Descend::Yes) => {
+                cells.children(&cell, &mut |child| {
+                    children.push(child);
+                    ControlFlow::Continue(())
+                });
+                stack.extend(children.drain(..).rev());
+            }
+        }
+    }
+}
+
+/// Whether a walk goes on below a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Descend {
+    /// To its children.
+    Yes,
+    /// To its siblings only.
+    No,
+}

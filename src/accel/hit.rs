@@ -1,0 +1,69 @@
+//! What a ray is asked, and what it answers.
+
+use crate::scene::PrimRef;
+
+/// Where a ray meets the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// In units of the ray's direction.
+    pub t: f32,
+    /// Barycentric weight of the triangle's second corner.
+    pub u: f32,
+    /// Barycentric weight of the third.
+    pub v: f32,
+    /// Index of the instance in the scene.
+    pub instance: u32,
+    /// Index of the triangle in the instance's mesh, in file order.
+    pub primitive: u32,
+}
+
+/// The same inside a structure: t in the scaled space, the triangle by its flattened index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrimHit {
+    /// In units of the scaled ray's direction.
+    pub t: f32,
+    /// Barycentric weight of the second corner.
+    pub u: f32,
+    /// Barycentric weight of the third corner.
+    pub v: f32,
+    /// The triangle.
+    pub prim: PrimRef,
+}
+
+/// What is asked of a batch of rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// The closest hit: camera and bounce rays.
+    Closest,
+    /// Whether there is any hit: shadow rays.
+    Any,
+}
+
+/// The question as a type, so that each answer has a loop of its own.
+pub trait Query: Copy + Sync {
+    /// The first hit found will do.
+    const ANY: bool;
+
+    /// Whether a hit counts (an alpha test, say).
+    #[inline(always)]
+    fn accept(&self, hit: &PrimHit) -> bool {
+        let _ = hit;
+        true
+    }
+}
+
+/// The closest hit of all.
+#[derive(Clone, Copy, Debug)]
+pub struct Closest;
+
+/// Any hit.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyHit;
+
+impl Query for Closest {
+    const ANY: bool = false;
+}
+
+impl Query for AnyHit {
+    const ANY: bool = true;
+}

@@ -1,0 +1,134 @@
+//! Acceleration structures.
+//!
+//! A structure is one folder and one line in [`registry`]: the plain data and its traversal in one
+//! file, each builder in its own. It implements [`Structure`] (how a ray is traced) and [`Cells`]
+//! (how its cells are walked); the blanket implementation below makes it an [`Accel`], which the
+//! renderer, the command line, the tests and the reports use without knowing what it is.
+
+mod best;
+mod brute;
+mod build;
+mod bvh;
+pub mod cell;
+mod grid;
+mod hit;
+mod kdtree;
+pub mod params;
+pub mod probe;
+pub mod registry;
+pub mod stats;
+pub mod validate;
+
+pub use build::{BuildCx, BuildError};
+pub use cell::{Cell, CellId, CellKind, Cells, MemoryPart, Shape, Split};
+pub use hit::{AnyHit, Closest, Hit, Mode, PrimHit, Query};
+
+use std::sync::Arc;
+
+use crate::geometry::Ray;
+use crate::scene::Geometry;
+use crate::task::{Cancel, Cancelled};
+use probe::{Counts, Off, Probe};
+
+/// How a ray is traced. Rays are in the scaled space of [`Geometry::space`] and valid.
+pub trait Structure: Cells + Sized + 'static {
+    /// What it was built over.
+    fn geometry(&self) -> &Arc<Geometry>;
+
+    /// Traces one ray: the closest accepted hit in the closed `[tmin, tmax]`, ties in t going to
+    /// the lowest primitive; for `Q::ANY` any accepted hit.
+    fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit>;
+
+    /// Traces world rays into `hits` of the same length. The default traces them one by one; a
+    /// structure for which one ray can take long looks at `cancel` more often.
+    fn trace_batch<Q: Query>(
+        &self,
+        rays: &[Ray],
+        query: &Q,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        let mut traced = Traced::default();
+        for (rays, hits) in rays.chunks(RAYS_PER_CHECK).zip(hits.chunks_mut(RAYS_PER_CHECK)) {
+            cancel.check()?;
+            for (ray, hit) in rays.iter().zip(hits) {
+                let local = |ray: &Ray| Ok(self.trace_one(ray, query, &mut Off));
+                *hit = in_scaled_space(self.geometry(), ray, &mut traced, local)?;
+            }
+        }
+        Ok(traced)
+    }
+}
+
+/// Rays traced between two looks at the cancel flag: well under a millisecond for any tree.
+const RAYS_PER_CHECK: usize = 64;
+
+/// What a batch has to say besides its hits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traced {
+    /// Rays that are not valid (see [`Ray::is_valid`]): they miss.
+    pub invalid: u64,
+}
+
+/// A built structure, whatever its kind.
+pub trait Accel: Cells {
+    /// What it was built over.
+    fn geometry(&self) -> &Arc<Geometry>;
+
+    /// Traces world rays into `hits`, which must be as long. In [`Mode::Any`] a hit is any one in
+    /// the ray's interval.
+    ///
+    /// # Errors
+    /// [`Cancelled`], within 100 ms of the request; some hits are then not written.
+    fn trace(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<Traced, Cancelled>;
+
+    /// Traces one world ray and counts what the traversal does. The hit is the same.
+    fn trace_watched(&self, ray: &Ray, mode: Mode, counts: &mut Counts) -> Option<Hit>;
+}
+
+impl<S: Structure> Accel for S {
+    fn geometry(&self) -> &Arc<Geometry> {
+        Structure::geometry(self)
+    }
+
+    fn trace(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<Traced, Cancelled> {
+        debug_assert_eq!(rays.len(), hits.len());
+        match mode {
+            Mode::Closest => self.trace_batch(rays, &Closest, hits, cancel),
+            Mode::Any => self.trace_batch(rays, &AnyHit, hits, cancel),
+        }
+    }
+
+    fn trace_watched(&self, ray: &Ray, mode: Mode, counts: &mut Counts) -> Option<Hit> {
+        let local = |ray: &Ray| {
+            Ok(match mode {
+                Mode::Closest => self.trace_one(ray, &Closest, counts),
+                Mode::Any => self.trace_one(ray, &AnyHit, counts),
+            })
+        };
+        in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local).unwrap_or(None)
+    }
+}
+
+/// Brings a world ray into the scaled space, traces it there, and brings the hit back.
+#[inline(always)]
+fn in_scaled_space(
+    geometry: &Geometry,
+    ray: &Ray,
+    traced: &mut Traced,
+    trace: impl FnOnce(&Ray) -> Result<Option<PrimHit>, Cancelled>,
+) -> Result<Option<Hit>, Cancelled> {
+    if !ray.is_valid() {
+        traced.invalid += 1;
+        return Ok(None);
+    }
+    let entered = geometry.space().enter(ray);
+    // A segment that ends before the scene, or rounds away, holds nothing.
+    if entered.ray.tmin > entered.ray.tmax {
+        return Ok(None);
+    }
+    Ok(trace(&entered.ray)?.map(|hit| {
+        let (instance, primitive) = geometry.locate(hit.prim);
+        Hit { t: entered.world_t(hit.t), u: hit.u, v: hit.v, instance, primitive }
+    }))
+}

@@ -1,0 +1,146 @@
+//! Every structure there is, one line each. What is registered is what the window offers, what the
+//! command line takes, and what the conformance suite tests.
+
+use std::sync::Arc;
+
+use super::params::{Param, ParamValues};
+use super::{Accel, BuildCx, BuildError, brute, bvh, grid, kdtree};
+use crate::geometry::tri::{Fast, TestKind, TriTest, Watertight};
+use crate::scene::Geometry;
+
+/// What kind of structure it is: raw SAH costs are comparable only within one family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// No structure.
+    Brute,
+    /// Bounding volume hierarchies.
+    Bvh,
+    /// k-d trees.
+    KdTree,
+    /// Grids.
+    Grid,
+}
+
+/// How a structure is built.
+pub type Build = fn(&Arc<Geometry>, &ParamValues, &BuildCx) -> Result<Box<dyn Accel>, BuildError>;
+
+/// A registered structure.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// The name used on the command line and in files.
+    pub id: &'static str,
+    /// The name in the window.
+    pub name: &'static str,
+    /// Its kind.
+    pub family: Family,
+    /// One sentence that explains it.
+    pub help: &'static str,
+    /// What can be set.
+    pub params: &'static [Param],
+    watertight: Build,
+    fast: Build,
+}
+
+impl Entry {
+    /// Builds it for a triangle test.
+    ///
+    /// # Errors
+    /// Cancelled, or it would not fit.
+    pub fn build(
+        &self,
+        geometry: &Arc<Geometry>,
+        test: TestKind,
+        p: &ParamValues,
+        cx: &BuildCx,
+    ) -> Result<Box<dyn Accel>, BuildError> {
+        match test {
+            TestKind::Watertight => (self.watertight)(geometry, p, cx),
+            TestKind::Fast => (self.fast)(geometry, p, cx),
+        }
+    }
+
+    /// The default parameters.
+    pub fn defaults(&self) -> ParamValues {
+        ParamValues::defaults(self.params)
+    }
+}
+
+/// Every structure, the simplest first.
+pub const ALL: &[Entry] = &[
+    Entry {
+        id: "brute",
+        name: "Brute force",
+        family: Family::Brute,
+        help: "No structure: every ray is tested against every triangle.",
+        params: &[],
+        watertight: brute::<Watertight, false>,
+        fast: brute::<Fast, false>,
+    },
+    Entry {
+        id: "bound",
+        name: "Bounding box",
+        family: Family::Brute,
+        help: "Brute force behind one box: rays that miss the box test nothing.",
+        params: &[],
+        watertight: brute::<Watertight, true>,
+        fast: brute::<Fast, true>,
+    },
+    Entry {
+        id: "bvh",
+        name: "BVH",
+        family: Family::Bvh,
+        help: "Bounding volume hierarchy: a binary tree of boxes, split by the binned surface area heuristic.",
+        params: bvh::PARAMS,
+        watertight: bvh::build::<Watertight>,
+        fast: bvh::build::<Fast>,
+    },
+    Entry {
+        id: "kdtree",
+        name: "k-d tree",
+        family: Family::KdTree,
+        help: "Space divided by axis-parallel planes; a ray visits the cells front to back and stops at the first hit.",
+        params: kdtree::PARAMS,
+        watertight: kdtree::build::<Watertight>,
+        fast: kdtree::build::<Fast>,
+    },
+    Entry {
+        id: "grid",
+        name: "Grid",
+        family: Family::Grid,
+        help: "Space cut into equal cells; a ray steps from cell to cell.",
+        params: grid::PARAMS,
+        watertight: grid::build::<Watertight>,
+        fast: grid::build::<Fast>,
+    },
+];
+
+fn brute<T: TriTest, const BOUND: bool>(
+    geometry: &Arc<Geometry>,
+    _: &ParamValues,
+    cx: &BuildCx,
+) -> Result<Box<dyn Accel>, BuildError> {
+    Ok(Box::new(brute::Brute::<T, BOUND>::build(geometry, cx)?))
+}
+
+/// The structure of that id.
+pub fn find(id: &str) -> Option<&'static Entry> {
+    ALL.iter().find(|entry| entry.id == id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_and_parameters_are_unique_and_explained() {
+        for (i, entry) in ALL.iter().enumerate() {
+            assert!(ALL[..i].iter().all(|other| other.id != entry.id));
+            assert!(entry.help.ends_with('.'));
+            for (k, param) in entry.params.iter().enumerate() {
+                assert!(entry.params[..k].iter().all(|other| other.id != param.id));
+                assert!(param.help.ends_with('.'), "{} {}", entry.id, param.id);
+                assert_eq!(param.parse(&param.default().to_string()), Ok(param.default()));
+            }
+        }
+    }
+}
