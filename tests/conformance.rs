@@ -362,6 +362,18 @@ fn a_build_stops_when_asked_and_keeps_to_its_budget() {
     }
 }
 
+/// Found by made-up scenes: the ray misses the triangle by 1e-20 behind its origin; a box taken as it
+/// is held only the part in front, and clamping t into it made a hit at the origin.
+#[test]
+fn a_near_miss_behind_the_origin_is_no_hit_at_it() {
+    let triangles = [[Vec3::new(0.0, 0.25, -0.0), Vec3::new(-0.5, -0.0, -1.0), Vec3::new(0.25, 0.0, 0.0)]];
+    let geometry = geometry_of(&scene_of(&triangles));
+    let ray = Ray::new(Vec3::new(0.0, 0.0, -1.0), Vec3::new(0.25, 1e-20, -0.0));
+    for (entry, test) in registry::ALL.iter().flat_map(|e| TestKind::ALL.map(|t| (e, t))) {
+        assert_eq!(trace(build(entry, &geometry, test).as_ref(), &[ray], Mode::Closest), [None], "{} {test:?}", entry.id);
+    }
+}
+
 fn coordinate() -> impl Strategy<Value = f32> {
     // Few distinct values, so that corners, edges and planes coincide; some ordinary ones.
     prop_oneof![3 => (-4i8..=4).prop_map(|i| f32::from(i) * 0.25), 2 => -1.0f32..1.0, 1 => Just(-0.0f32), 1 => Just(1e-20f32)]

@@ -36,23 +36,9 @@ const PARALLEL_INV: f32 = (1u128 << 120) as f32;
 const PARALLEL_PAD: f32 = 1.0 / (1u64 << 40) as f32;
 
 impl Slabs {
-    /// Boxes exactly as they are (but closed also along axes the ray is parallel to).
-    pub fn exact(ray: &Ray) -> Self {
-        Self::widened(ray, Vec3::ZERO)
-    }
-
-    /// Boxes widened by the error bound above, for a scene inside `bounds`.
-    pub fn watertight(ray: &Ray, bounds: &Aabb) -> Self {
-        Self::widened(ray, Self::pad(ray.origin, bounds))
-    }
-
-    /// The widening `e` for rays from `origin`, per axis.
-    pub fn pad(origin: Vec3, bounds: &Aabb) -> Vec3 {
-        let reach = (bounds.max - origin).abs().max((bounds.min - origin).abs()).max_element();
-        Vec3::splat(12.0 * UNIT_ROUNDOFF * reach) + 2.0 * UNIT_ROUNDOFF * origin.abs()
-    }
-
-    fn widened(ray: &Ray, pad: Vec3) -> Self {
+    /// For a ray and a scene inside `bounds`.
+    pub fn new(ray: &Ray, bounds: &Aabb) -> Self {
+        let pad = Self::pad(ray.origin, bounds);
         let mut slabs = Self { o_lo: ray.origin + pad, o_hi: ray.origin - pad, inv: Vec3::ONE };
         for k in 0..3 {
             if ray.dir[k].abs() < PARALLEL {
@@ -65,6 +51,12 @@ impl Slabs {
             }
         }
         slabs
+    }
+
+    /// The widening `e` for rays from `origin`, per axis.
+    pub fn pad(origin: Vec3, bounds: &Aabb) -> Vec3 {
+        let reach = (bounds.max - origin).abs().max((bounds.min - origin).abs()).max_element();
+        Vec3::splat(12.0 * UNIT_ROUNDOFF * reach) + 2.0 * UNIT_ROUNDOFF * origin.abs()
     }
 
     /// The t at which the ray enters and leaves the box. It misses if the first exceeds the second.
@@ -120,22 +112,20 @@ mod tests {
             for zero in [0.0, -0.0] {
                 for (y, z) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 1.0)] {
                     let ray = Ray::new(Vec3::new(-3.0 * sign, y, z), Vec3::new(sign, zero, zero));
-                    assert!(hits(&Slabs::exact(&ray), &UNIT), "{ray:?}");
-                    assert!(hits(&Slabs::watertight(&ray, &UNIT), &UNIT), "{ray:?}");
+                    assert!(hits(&Slabs::new(&ray, &UNIT), &UNIT), "{ray:?}");
                 }
             }
         }
         let outside = Ray::new(Vec3::new(-3.0, 1.1, 0.5), Vec3::X);
-        assert!(!hits(&Slabs::watertight(&outside, &UNIT), &UNIT));
+        assert!(!hits(&Slabs::new(&outside, &UNIT), &UNIT));
     }
 
     #[test]
     fn a_larger_box_never_has_a_smaller_interval() {
         let ray = Ray::new(Vec3::new(-1.3, 0.7, 2.1), Vec3::new(0.3, -1e-30, -0.9));
-        for slabs in [Slabs::exact(&ray), Slabs::watertight(&ray, &UNIT)] {
-            let (a, b) = slabs.interval(&UNIT);
-            let (c, d) = slabs.interval(&UNIT.with(Vec3::splat(1.0).map(f32::next_up)));
-            assert!(c <= a && b <= d);
-        }
+        let slabs = Slabs::new(&ray, &UNIT);
+        let (a, b) = slabs.interval(&UNIT);
+        let (c, d) = slabs.interval(&UNIT.with(Vec3::splat(1.0).map(f32::next_up)));
+        assert!(c <= a && b <= d);
     }
 }

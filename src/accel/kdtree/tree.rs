@@ -16,7 +16,7 @@ use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shap
 use crate::accel::probe::Probe;
 use crate::accel::{PrimHit, Query, Structure};
 use crate::geometry::tri::TriTest;
-use crate::geometry::{Aabb, Axis, Ray, Slabs};
+use crate::geometry::{Aabb, Axis, Ray};
 use crate::scene::{Geometry, PrimRef};
 use crate::task::Charge;
 
@@ -142,8 +142,7 @@ impl<T: TriTest> Structure for KdTree<T> {
     fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
         let bounds = self.built.geometry.bounds();
         let test = T::prepare(ray, bounds);
-        // Planes are widened for every triangle test, also for one that takes boxes as they are.
-        let slabs = Slabs::watertight(ray, bounds);
+        let slabs = test.slabs();
         let mut best = Best::new(ray.tmin, ray.tmax);
         let (entry, exit) = slabs.interval(bounds);
         let (mut entry, mut exit) = (entry.max(ray.tmin), exit.min(ray.tmax));

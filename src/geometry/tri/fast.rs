@@ -4,7 +4,8 @@ use super::{TestKind, TriHit, TriTest};
 use crate::geometry::{Aabb, Ray, Slabs};
 use glam::Vec3;
 
-/// Few operations, boxes tested as they are. Rays through shared edges may slip through.
+/// Few operations. Rays through shared edges may slip through; boxes are widened all the same, since
+/// a box taken as it is can cut the ray where it meets the triangle, and clamping t would move it far.
 #[derive(Clone, Copy, Debug)]
 pub struct Fast {
     origin: Vec3,
@@ -16,8 +17,8 @@ impl TriTest for Fast {
     const KIND: TestKind = TestKind::Fast;
 
     #[inline(always)]
-    fn prepare(ray: &Ray, _: &Aabb) -> Self {
-        Self { origin: ray.origin, dir: ray.dir, slabs: Slabs::exact(ray) }
+    fn prepare(ray: &Ray, bounds: &Aabb) -> Self {
+        Self { origin: ray.origin, dir: ray.dir, slabs: Slabs::new(ray, bounds) }
     }
 
     #[inline(always)]

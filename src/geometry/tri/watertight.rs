@@ -40,7 +40,7 @@ impl TriTest for Watertight {
         let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
         let (kx, ky) = if d[kz] < 0.0 { (ky, kx) } else { (kx, ky) };
         let shear = Vec3::new(d[kx] / d[kz], d[ky] / d[kz], 1.0 / d[kz]);
-        Self { origin: ray.origin, axes: [kx, ky, kz], shear, slabs: Slabs::watertight(ray, bounds) }
+        Self { origin: ray.origin, axes: [kx, ky, kz], shear, slabs: Slabs::new(ray, bounds) }
     }
 
     #[inline(always)]
