@@ -8,6 +8,7 @@
 
 pub mod accel;
 pub mod geometry;
+pub mod render;
 pub mod scene;
 pub mod sys;
 pub mod task;

@@ -1,0 +1,80 @@
+//! What a picture shows.
+
+/// A way to turn a hit, or the work it took, into a colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Base colour under a headlight and a sky.
+    #[default]
+    Shaded,
+    /// The shading normal as a colour.
+    Normals,
+    /// Distance along the view.
+    Depth,
+    /// How open the surroundings of a point are.
+    Ao,
+    /// Nodes visited by the camera ray.
+    Nodes,
+    /// Primitives tested by the camera ray.
+    Prims,
+}
+
+impl Mode {
+    /// All of them, in the order of menus.
+    pub const ALL: [Self; 6] = [Self::Shaded, Self::Normals, Self::Depth, Self::Ao, Self::Nodes, Self::Prims];
+
+    /// The name used on the command line and in files.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Shaded => "shaded",
+            Self::Normals => "normals",
+            Self::Depth => "depth",
+            Self::Ao => "ao",
+            Self::Nodes => "nodes",
+            Self::Prims => "prims",
+        }
+    }
+
+    /// The name in the window.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Shaded => "Shaded",
+            Self::Normals => "Normals",
+            Self::Depth => "Depth",
+            Self::Ao => "Ambient occlusion",
+            Self::Nodes => "Nodes visited",
+            Self::Prims => "Primitives tested",
+        }
+    }
+
+    /// One sentence for the user.
+    pub const fn help(self) -> &'static str {
+        match self {
+            Self::Shaded => "Base colour under a headlight and a sky.",
+            Self::Normals => "The direction of the surface as a colour: red is x, green is y, blue is z.",
+            Self::Depth => "Distance from the camera, near is bright.",
+            Self::Ao => "How much of the sky each point sees: one random ray a sample.",
+            Self::Nodes => "How many nodes or cells each camera ray visits in the structure.",
+            Self::Prims => "How many triangles each camera ray is tested against.",
+        }
+    }
+
+    /// Whether pixels are amounts that a range turns into colours, rather than colours.
+    pub const fn is_scalar(self) -> bool {
+        matches!(self, Self::Depth | Self::Nodes | Self::Prims)
+    }
+
+    /// Whether the traversal is watched.
+    pub const fn is_heat(self) -> bool {
+        matches!(self, Self::Nodes | Self::Prims)
+    }
+}
+
+impl std::str::FromStr for Mode {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let ids = || Self::ALL.map(Self::id).join(", ");
+        Self::ALL.into_iter().find(|mode| mode.id() == s).ok_or_else(|| format!("there is no mode '{s}': use one of {}", ids()))
+    }
+}

@@ -1,0 +1,44 @@
+//! A finished pass as the window gets it.
+
+use super::Range;
+use crate::accel::probe::Counts;
+
+/// Bytes to show, the depth behind them, and how they came to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Grows with every picture; two of one generation are the same.
+    pub generation: u64,
+    /// The request it answers.
+    pub request: u64,
+    /// Columns; fewer than asked for in a coarse pass.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Gamma-encoded red, green, blue and opacity (not premultiplied); row 0 at the top.
+    pub rgba: Vec<u8>,
+    /// Linear depth in the scaled space, infinite where nothing is hit.
+    pub depth: Vec<f32>,
+    /// The range that amounts were mapped with.
+    pub range: Range,
+    /// How far the picture is.
+    pub progress: Progress,
+}
+
+/// How far a picture is, and at what pace.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// Samples in each pixel.
+    pub samples: u32,
+    /// Screen pixels to a pixel of the picture, on each axis: more than 1 in a coarse pass.
+    pub step: u32,
+    /// Seconds from the request to this picture.
+    pub secs: f64,
+    /// Rays traced a second in this pass, by all threads.
+    pub rays_per_sec: f64,
+    /// What camera rays do in this view: summed over [`Self::counted`] of them.
+    pub counts: Counts,
+    /// Rays that were counted.
+    pub counted: u64,
+    /// No more samples will come.
+    pub done: bool,
+}

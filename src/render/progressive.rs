@@ -1,0 +1,328 @@
+//! Refines a picture on threads of its own: a coarse pass of the whole view first, fine enough to
+//! come within [`FIRST_PASS_SECS`], then finer ones, then samples that accumulate to a limit; then
+//! the processors rest.
+//!
+//! ```text
+//! request ─► step 8 ─► 4 ─► 2 ─► 1 ─► 2nd sample ─► 3rd … limit ─► wait
+//!               └─ each finished pass becomes a Picture; a new request stops the pass that runs
+//! ```
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use super::tile::Job;
+use super::{Development, Film, Mode, Picture, Progress, Range, auto_range};
+use crate::accel;
+use crate::accel::probe::Counts;
+use crate::task::{Cancel, Cancelled, Pool};
+
+/// The time in which the first, coarse pass should be there.
+pub const FIRST_PASS_SECS: f64 = 0.035;
+/// The coarsest pass: one pixel for this many on each axis.
+const COARSEST: u32 = 64;
+/// Camera rays counted for the figures beside the picture.
+const COUNTED: u32 = 48;
+
+/// What the window wants to see.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The view.
+    pub job: Job,
+    /// Columns of the full picture.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Samples after which to rest.
+    pub max_samples: u32,
+    /// For amounts; `None` takes one that suits the first full pass.
+    pub range: Option<Range>,
+}
+
+/// The background threads and what they were last asked for. Dropping it stops them.
+#[derive(Debug)]
+pub struct Renderer {
+    shared: Arc<Shared>,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    state: Mutex<State>,
+    wake: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    request: Option<Request>,
+    /// Grows with every request.
+    number: u64,
+    /// Stops the pass that runs.
+    cancel: Cancel,
+    pauses: u32,
+    running: bool,
+    quit: bool,
+    picture: Option<Arc<Picture>>,
+}
+
+/// While it lives, the renderer rests.
+#[derive(Debug)]
+pub struct Pause(Arc<Shared>);
+
+impl Renderer {
+    /// Starts the thread. `notify` is called from it whenever there is a new picture.
+    ///
+    /// # Errors
+    /// If the system grants no thread.
+    pub fn new(pool: Pool, notify: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared { state: Mutex::default(), wake: Condvar::new() });
+        let worker = Worker { shared: Arc::clone(&shared), pool, generation: 0, notify };
+        let thread = std::thread::Builder::new().name("render".into()).spawn(move || worker.run())?;
+        Ok(Self { shared, thread: Some(thread) })
+    }
+
+    /// Asks for a picture; what was asked before is dropped. Returns the request's number.
+    pub fn request(&self, request: Request) -> u64 {
+        let mut state = self.shared.lock();
+        state.request = Some(request);
+        state.number += 1;
+        state.cancel.cancel();
+        self.shared.wake.notify_all();
+        state.number
+    }
+
+    /// Asks for nothing: the scene is gone.
+    pub fn clear(&self) {
+        let mut state = self.shared.lock();
+        state.request = None;
+        state.picture = None;
+        state.number += 1;
+        state.cancel.cancel();
+    }
+
+    /// The newest picture.
+    pub fn picture(&self) -> Option<Arc<Picture>> {
+        self.shared.lock().picture.clone()
+    }
+
+    /// Stops rendering until the guard is dropped; returns at once.
+    pub fn pause(&self) -> Pause {
+        let mut state = self.shared.lock();
+        state.pauses += 1;
+        state.cancel.cancel();
+        Pause(Arc::clone(&self.shared))
+    }
+}
+
+impl Pause {
+    /// Waits until no pass runs any more: not for the window's thread.
+    pub fn wait(&self) {
+        let mut state = self.0.lock();
+        while state.running {
+            state = self.0.wake.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl Drop for Pause {
+    fn drop(&mut self) {
+        self.0.lock().pauses -= 1;
+        self.0.wake.notify_all();
+    }
+}
+
+impl Drop for Renderer {
+    fn drop(&mut self) {
+        {
+            let mut state = self.shared.lock();
+            state.quit = true;
+            state.cancel.cancel();
+        }
+        self.shared.wake.notify_all();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+struct Worker<N> {
+    shared: Arc<Shared>,
+    pool: Pool,
+    generation: u64,
+    notify: N,
+}
+
+/// A request on its way.
+struct Task {
+    request: Request,
+    number: u64,
+    start: Instant,
+    range: Option<Range>,
+    counts: Counts,
+    counted: u64,
+    /// The film of full resolution, kept over a pause.
+    film: Option<Film>,
+}
+
+impl<N: Fn()> Worker<N> {
+    fn run(mut self) {
+        let mut task: Option<Task> = None;
+        loop {
+            let Some((next, cancel)) = self.next(task.take()) else { return };
+            let mut current = next;
+            let _ = self.refine(&mut current, &cancel); // stopped: the next request says why
+            task = Some(current);
+        }
+    }
+
+    /// Waits for something to do: a new request, or the present one if it is not done. `None` to quit.
+    fn next(&self, present: Option<Task>) -> Option<(Task, Cancel)> {
+        let mut state = self.shared.lock();
+        state.running = false;
+        self.shared.wake.notify_all();
+        loop {
+            if state.quit {
+                return None;
+            }
+            let fresh = present.as_ref().is_none_or(|task| task.number != state.number);
+            if state.pauses == 0
+                && let Some(request) = &state.request
+            {
+                let unfinished = |task: &Task| task.film.as_ref().is_none_or(|f| f.samples() < task.request.max_samples);
+                let next = if fresh { Some(Task::new(request.clone(), state.number)) } else { present.filter(unfinished) };
+                if let Some(task) = next {
+                    state.cancel = Cancel::new();
+                    state.running = true;
+                    return Some((task, state.cancel.clone()));
+                }
+                return self.wait_for_request(state);
+            }
+            state = self.shared.wake.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// The picture is done: only a new request, or the end, goes on.
+    fn wait_for_request(&self, mut state: MutexGuard<'_, State>) -> Option<(Task, Cancel)> {
+        let done = state.number;
+        loop {
+            state = self.shared.wake.wait(state).unwrap_or_else(PoisonError::into_inner);
+            if state.quit {
+                return None;
+            }
+            if state.number != done {
+                drop(state);
+                return self.next(None);
+            }
+        }
+    }
+
+    fn refine(&mut self, task: &mut Task, cancel: &Cancel) -> Result<(), Cancelled> {
+        if task.film.is_none() {
+            let mut step = self.first_step(task, cancel)?;
+            while step > 1 {
+                let mut film = Film::new(task.request.width.div_ceil(step), task.request.height.div_ceil(step));
+                self.pass(task, &mut film, step, cancel)?;
+                step /= 2;
+            }
+            task.film = Some(Film::new(task.request.width, task.request.height));
+        }
+        let Some(mut film) = task.film.take() else { return Ok(()) };
+        while film.samples() < task.request.max_samples {
+            // A stopped pass has left parts of a sample behind: keep what was whole.
+            let whole = film.clone();
+            if let Err(stopped) = self.pass(task, &mut film, 1, cancel) {
+                task.film = Some(whole);
+                return Err(stopped);
+            }
+        }
+        task.film = Some(film);
+        Ok(())
+    }
+
+    /// One pass, and the picture it makes.
+    fn pass(&mut self, task: &mut Task, film: &mut Film, step: u32, cancel: &Cancel) -> Result<(), Cancelled> {
+        let start = Instant::now();
+        let rays = task.request.job.pass(film, &self.pool, cancel)?;
+        let rays_per_sec = rays as f64 / start.elapsed().as_secs_f64().max(1e-9);
+        let mode = task.request.job.mode;
+        let range = if mode.is_scalar() {
+            *task.range.get_or_insert_with(|| auto_range(film, mode))
+        } else {
+            Range { min: 0.0, max: 1.0 }
+        };
+        if step > 1 && task.request.range.is_none() {
+            task.range = None; // a coarse pass does not settle the range
+        }
+        let done = step == 1 && film.samples() >= task.request.max_samples;
+        let progress = Progress {
+            samples: film.samples(),
+            step,
+            secs: task.start.elapsed().as_secs_f64(),
+            rays_per_sec,
+            counts: task.counts,
+            counted: task.counted,
+            done,
+        };
+        self.generation += 1;
+        let rgba = Development { mode, range, background: None }.develop(film);
+        let picture = Picture {
+            generation: self.generation,
+            request: task.number,
+            width: film.width(),
+            height: film.height(),
+            rgba,
+            depth: film.depth().to_vec(),
+            range,
+            progress,
+        };
+        let mut state = self.shared.lock();
+        if state.number == task.number {
+            state.picture = Some(Arc::new(picture));
+        }
+        drop(state);
+        (self.notify)();
+        Ok(())
+    }
+
+    /// How coarse the first pass has to be. A grid of camera rays is counted and timed: enough to
+    /// foresee the time of a pass, and what the figures beside the picture need.
+    fn first_step(&self, task: &mut Task, cancel: &Cancel) -> Result<u32, Cancelled> {
+        let request = &task.request;
+        let coarse = (COUNTED, (COUNTED * request.height).div_ceil(request.width.max(1)).clamp(1, COUNTED * 2));
+        let rays = request.job.camera_rays(coarse.0, coarse.1, 0..coarse.1, 0);
+        let start = Instant::now();
+        let budget = FIRST_PASS_SECS / 3.0;
+        // Every seventh ray, so that a slow structure's few are spread over the view.
+        let mut hits = [None; 1];
+        for i in 0..rays.len() {
+            let ray = rays[i * 7 % rays.len()];
+            request.job.accel.trace(&[ray], accel::Mode::Closest, &mut hits, cancel)?;
+            request.job.accel.trace_watched(&ray, accel::Mode::Closest, &mut task.counts);
+            task.counted += 1;
+            if start.elapsed().as_secs_f64() > budget {
+                break;
+            }
+        }
+        // Both calls of each ray together are about as slow as one with shading.
+        let weight = if request.job.mode == Mode::Ao { 2.0 } else { 1.0 };
+        let secs_per_ray = weight * start.elapsed().as_secs_f64() / task.counted as f64 / self.pool.threads() as f64;
+        let pixels = f64::from(request.width) * f64::from(request.height);
+        let mut step = 1;
+        while step < COARSEST && pixels / f64::from(step * step) * secs_per_ray > FIRST_PASS_SECS * 2.0 / 3.0 {
+            step *= 2;
+        }
+        Ok(step)
+    }
+}
+
+impl Task {
+    fn new(request: Request, number: u64) -> Self {
+        let range = request.range;
+        Self { request, number, start: Instant::now(), range, counts: Counts::default(), counted: 0, film: None }
+    }
+}

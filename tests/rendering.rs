@@ -1,0 +1,91 @@
+//! Pictures: the same for every structure, finished in the order that was promised.
+
+mod common;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use boxwood::accel::{Accel, registry};
+use boxwood::geometry::tri::TestKind;
+use boxwood::render::{Film, Job, Mode, Renderer, Request, render};
+use boxwood::scene::Camera;
+use boxwood::task::{Cancel, Pool, Progress};
+use common::{ball, build, geometry_of, scene_of, soup};
+use glam::Vec3;
+
+fn job(triangles: &[[Vec3; 3]], id: &str, mode: Mode) -> Job {
+    let scene = scene_of(triangles);
+    let geometry = geometry_of(&scene);
+    let accel: Arc<dyn Accel> = Arc::from(build(registry::find(id).expect("registered"), &geometry, TestKind::Watertight));
+    let camera = Camera::framing(geometry.world_bounds(), Vec3::new(1.0, 0.7, 2.0), Vec3::Y, 1.5);
+    Job { scene: Arc::new(scene), accel, camera, mode }
+}
+
+fn film(job: &Job, threads: usize) -> Film {
+    render(job, 90, 60, 3, &Pool::new("test", threads), &Cancel::new(), &Progress::new()).expect("not cancelled").film
+}
+
+#[test]
+fn all_structures_give_the_same_picture() {
+    for triangles in [soup(400, 0.3, 7), ball(12)] {
+        for mode in [Mode::Shaded, Mode::Normals, Mode::Depth, Mode::Ao] {
+            let expected = film(&job(&triangles, "brute", mode), 1);
+            assert!(expected.means().any(|m| m[3] > 0.9) && expected.means().any(|m| m[3] < 0.1), "an edge is in view");
+            for entry in registry::ALL {
+                let same = film(&job(&triangles, entry.id, mode), 2) == expected;
+                assert!(same, "{} differs in {mode:?}", entry.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn heat_maps_tell_structures_apart() {
+    let triangles = soup(400, 0.3, 7);
+    let total = |id: &str, mode| film(&job(&triangles, id, mode), 1).means().map(|m| f64::from(m[0])).sum::<f64>();
+    assert!(total("brute", Mode::Prims) > 4.0 * total("bvh", Mode::Prims));
+    assert!(total("bvh", Mode::Nodes) > total("brute", Mode::Nodes));
+}
+
+#[test]
+fn a_closed_ball_is_lit_without_speckles() {
+    let ao = film(&job(&ball(24), "bvh", Mode::Ao), 1);
+    let dark = ao.means().filter(|m| m[3] > 0.99 && m[0] < 0.3).count();
+    let inside = ao.means().filter(|m| m[3] > 0.99).count();
+    assert!(dark * 50 < inside, "a convex surface shadows itself at {dark} of {inside} pixels");
+}
+
+#[test]
+fn the_renderer_refines_rests_and_pauses() {
+    let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
+    let request =
+        Request { job: job(&soup(400, 0.3, 7), "brute", Mode::Shaded), width: 240, height: 160, max_samples: 3, range: None };
+    let wait = |number: u64, samples: u32| {
+        let start = Instant::now();
+        loop {
+            assert!(start.elapsed() < Duration::from_secs(30), "no picture came");
+            if let Some(p) =
+                renderer.picture().filter(|p| p.request == number && p.progress.step == 1 && p.progress.samples >= samples)
+            {
+                return p;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    };
+    let first = renderer.request(request.clone());
+    let done = wait(first, 3);
+    assert!(done.progress.done && done.progress.counted > 0 && (done.width, done.height) == (240, 160));
+    std::thread::sleep(Duration::from_millis(30));
+    assert_eq!(renderer.picture().map(|p| p.generation), Some(done.generation), "it rests at the limit");
+
+    let second = renderer.request(Request { max_samples: 100_000, ..request });
+    let running = wait(second, 2);
+    let pause = renderer.pause();
+    pause.wait();
+    let held = renderer.picture().map(|p| p.generation);
+    std::thread::sleep(Duration::from_millis(50));
+    assert_eq!(renderer.picture().map(|p| p.generation), held, "a paused renderer makes no pictures");
+    drop(pause);
+    wait(second, running.progress.samples + 2);
+    assert!(second > first);
+}
