@@ -3,6 +3,7 @@
 //! A scene is one file here and one line of [`all`]. Each is made for something: a figure for a
 //! lecture, a classic that readers of papers know, or a way to make some structure suffer.
 
+mod bezier;
 mod fill;
 mod hair;
 mod lecture;
@@ -10,6 +11,7 @@ mod random;
 mod soup;
 mod spec;
 mod sphere;
+mod teapot;
 
 use super::{Camera, LoadCx, Projection, Reason, Scene};
 use glam::Vec3;
@@ -58,8 +60,9 @@ impl Size {
 use Size::{Fixed, Scales};
 
 #[rustfmt::skip]
-static ALL: [Builtin; 3] = [
+static ALL: [Builtin; 4] = [
     scene("lecture", "Sixteen flat triangles, for drawing trees on.", Fixed(16), lecture::generate),
+    scene("teapot", "The Utah teapot, from its Bezier patches.", Scales(6_320), teapot::generate),
     scene("hair", "A ball of hair: long thin triangles, whose boxes are mostly empty.", Scales(100_000), hair::generate),
     scene("soup", "Triangles thrown at random into a cube.", Scales(100_000), soup::generate),
 ];
