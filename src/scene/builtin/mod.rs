@@ -11,7 +11,9 @@ mod random;
 mod soup;
 mod spec;
 mod sphere;
+mod stadium;
 mod teapot;
+mod teapot_in_stadium;
 
 use super::{Camera, LoadCx, Projection, Reason, Scene};
 use glam::Vec3;
@@ -60,9 +62,10 @@ impl Size {
 use Size::{Fixed, Scales};
 
 #[rustfmt::skip]
-static ALL: [Builtin; 4] = [
+static ALL: [Builtin; 5] = [
     scene("lecture", "Sixteen flat triangles, for drawing trees on.", Fixed(16), lecture::generate),
     scene("teapot", "The Utah teapot, from its Bezier patches.", Scales(6_320), teapot::generate),
+    scene("teapot-in-stadium", "A small teapot in a huge stadium, which a uniform grid puts into one cell.", Scales(20_224), teapot_in_stadium::generate),
     scene("hair", "A ball of hair: long thin triangles, whose boxes are mostly empty.", Scales(100_000), hair::generate),
     scene("soup", "Triangles thrown at random into a cube.", Scales(100_000), soup::generate),
 ];
