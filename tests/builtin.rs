@@ -21,6 +21,7 @@ fn tolerance(id: &str) -> (f64, usize) {
         "soup" => (1.0, 1),
         "hair" => (1.001, 7_000),
         "teapot" | "teapot-in-stadium" => (1.15, 2_500),
+        "cornell-box" => (1.2, 2_500),
         other => panic!("how exact is {other}?"),
     }
 }

@@ -4,6 +4,7 @@
 //! lecture, a classic that readers of papers know, or a way to make some structure suffer.
 
 mod bezier;
+mod cornell_box;
 mod fill;
 mod hair;
 mod lecture;
@@ -62,10 +63,11 @@ impl Size {
 use Size::{Fixed, Scales};
 
 #[rustfmt::skip]
-static ALL: [Builtin; 5] = [
+static ALL: [Builtin; 6] = [
     scene("lecture", "Sixteen flat triangles, for drawing trees on.", Fixed(16), lecture::generate),
     scene("teapot", "The Utah teapot, from its Bezier patches.", Scales(6_320), teapot::generate),
     scene("teapot-in-stadium", "A small teapot in a huge stadium, which a uniform grid puts into one cell.", Scales(20_224), teapot_in_stadium::generate),
+    scene("cornell-box", "The Cornell box, as measured.", Scales(38), cornell_box::generate),
     scene("hair", "A ball of hair: long thin triangles, whose boxes are mostly empty.", Scales(100_000), hair::generate),
     scene("soup", "Triangles thrown at random into a cube.", Scales(100_000), soup::generate),
 ];
