@@ -22,6 +22,7 @@ fn tolerance(id: &str) -> (f64, usize) {
         "hair" => (1.001, 7_000),
         "teapot" | "teapot-in-stadium" => (1.15, 2_500),
         "cornell-box" => (1.2, 2_500),
+        "sphere-flake" => (1.12, 2_500),
         other => panic!("how exact is {other}?"),
     }
 }
@@ -137,4 +138,11 @@ fn the_lecture_is_flat() {
     let scene = make("lecture", &LoadCx::unattended());
     assert!((14..=18).contains(&scene.triangle_count()));
     assert!(scene.meshes.iter().flat_map(|mesh| &mesh.positions).all(|p| p.z == 0.0));
+}
+
+#[test]
+fn the_sphere_flake_is_one_sphere_placed_many_times() {
+    let scene = make("sphere-flake", &LoadCx::unattended());
+    assert_eq!(scene.meshes.len(), 2);
+    assert_eq!(scene.instances.iter().filter(|i| i.mesh == 0).count(), 820);
 }
