@@ -9,6 +9,7 @@ mod fill;
 mod hair;
 mod lecture;
 mod menger;
+mod noise;
 mod random;
 mod soup;
 mod spec;
@@ -17,6 +18,7 @@ mod sphere_flake;
 mod stadium;
 mod teapot;
 mod teapot_in_stadium;
+mod terrain;
 
 use super::{Camera, LoadCx, Projection, Reason, Scene};
 use glam::Vec3;
@@ -65,13 +67,14 @@ impl Size {
 use Size::{Fixed, Scales};
 
 #[rustfmt::skip]
-static ALL: [Builtin; 8] = [
+static ALL: [Builtin; 9] = [
     scene("lecture", "Sixteen flat triangles, for drawing trees on.", Fixed(16), lecture::generate),
     scene("teapot", "The Utah teapot, from its Bezier patches.", Scales(6_320), teapot::generate),
     scene("teapot-in-stadium", "A small teapot in a huge stadium, which a uniform grid puts into one cell.", Scales(20_224), teapot_in_stadium::generate),
     scene("cornell-box", "The Cornell box, as measured.", Scales(38), cornell_box::generate),
     scene("sphere-flake", "Haines' sphere flake: one sphere, placed hundreds of times.", Scales(104_962), sphere_flake::generate),
     scene("menger", "A Menger sponge: large flat faces, all parallel to the axes.", Scales(36_096), menger::generate),
+    scene("terrain", "Mountains: an even sheet of small triangles.", Scales(131_072), terrain::generate),
     scene("hair", "A ball of hair: long thin triangles, whose boxes are mostly empty.", Scales(100_000), hair::generate),
     scene("soup", "Triangles thrown at random into a cube.", Scales(100_000), soup::generate),
 ];

@@ -58,6 +58,12 @@ const fn mix(x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
+/// Random bits for a point of a plane lattice.
+pub(super) const fn lattice(seed: u64, x: i32, y: i32) -> u64 {
+    let point = ((x.cast_unsigned() as u64) << 32) | y.cast_unsigned() as u64;
+    mix(mix(point ^ seed).wrapping_add(STEP))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
