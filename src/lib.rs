@@ -10,3 +10,5 @@ pub mod geometry;
 pub mod scene;
 pub mod sys;
 pub mod task;
+#[cfg(feature = "viewer")]
+pub mod viewer;

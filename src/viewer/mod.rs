@@ -1,0 +1,4 @@
+//! The window.
+
+pub mod format;
+pub mod theme;
