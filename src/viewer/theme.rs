@@ -6,7 +6,7 @@ mod marker;
 mod palette;
 mod ramp;
 
-pub use lines::{DASH_PT, HALO_MOST_BOXES, LineStyle, PLANE_FILL, PLANE_FILL_HIDDEN};
+pub use lines::{DASH_PT, LineStyle, PLANE_FILL, PLANE_FILL_HIDDEN};
 pub use marker::Marker;
 pub use palette::{Mark, Palette};
 pub use ramp::{depth_color, depth_position, difference, viridis};
