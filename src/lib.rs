@@ -12,3 +12,5 @@ pub mod render;
 pub mod scene;
 pub mod sys;
 pub mod task;
+#[cfg(feature = "viewer")]
+pub mod viewer;

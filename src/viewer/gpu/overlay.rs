@@ -1,0 +1,114 @@
+//! Boxes and planes drawn over the picture: the data, and its copy on the GPU.
+
+use std::ops::Range;
+
+use eframe::wgpu;
+
+use crate::geometry::{Aabb, num};
+
+/// A box whose edges are drawn, in the scaled space. A flat one, if it is among the planes, is
+/// filled as well.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct BoxInstance {
+    /// The least corner.
+    pub min: [f32; 3],
+    /// The greatest corner.
+    pub max: [f32; 3],
+    /// Gamma-encoded colour, and opacity.
+    pub color: [u8; 4],
+}
+
+impl BoxInstance {
+    /// A box in a colour.
+    pub fn new(cell: &Aabb, color: [u8; 4]) -> Self {
+        Self { min: cell.min.to_array(), max: cell.max.to_array(), color }
+    }
+
+    /// How the GPU reads it.
+    pub(super) const LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+        array_stride: size_of::<Self>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4],
+    };
+}
+
+/// What is drawn over the picture. Later boxes are drawn over earlier ones.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overlay {
+    /// Changes whenever the content does.
+    pub generation: u64,
+    /// Boxes, of which the edges are drawn.
+    pub boxes: Vec<BoxInstance>,
+    /// Flat boxes, filled and with edges: split planes.
+    pub planes: Vec<BoxInstance>,
+    /// The selected box, over everything else and in its own style; its colour is not used.
+    pub selected: Option<BoxInstance>,
+}
+
+/// The instances of an overlay on the GPU: boxes, then planes, then the selected one.
+pub(super) struct OverlayBuffer {
+    buffer: wgpu::Buffer,
+    generation: Option<u64>,
+    boxes: u32,
+    planes: u32,
+    selected: u32,
+}
+
+impl OverlayBuffer {
+    pub(super) fn new(device: &wgpu::Device) -> Self {
+        Self { buffer: instance_buffer(device, 1), generation: None, boxes: 0, planes: 0, selected: 0 }
+    }
+
+    /// Brings the overlay there if it is another one than before.
+    pub(super) fn update(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, overlay: &Overlay) {
+        if self.generation == Some(overlay.generation) {
+            return;
+        }
+        // Far more than can be told apart on any screen; what is selected and the planes go first.
+        let most = num::floor_index(device.limits().max_buffer_size as f64, num::MAX_INDEX) / size_of::<BoxInstance>();
+        let selected = overlay.selected.as_slice();
+        let planes = &overlay.planes[..overlay.planes.len().min(most - selected.len())];
+        let boxes = &overlay.boxes[..overlay.boxes.len().min(most - selected.len() - planes.len())];
+
+        let count = boxes.len() + planes.len() + selected.len();
+        if (count * size_of::<BoxInstance>()) as u64 > self.buffer.size() {
+            self.buffer = instance_buffer(device, count.next_power_of_two().min(most));
+        }
+        let mut offset = 0;
+        for part in [boxes, planes, selected] {
+            let bytes: &[u8] = bytemuck::cast_slice(part);
+            queue.write_buffer(&self.buffer, offset, bytes);
+            offset += bytes.len() as u64;
+        }
+        [self.boxes, self.planes, self.selected] = [boxes, planes, selected].map(|part| num::index(part.len()));
+        self.generation = Some(overlay.generation);
+    }
+
+    pub(super) fn buffer(&self) -> &wgpu::Buffer {
+        &self.buffer
+    }
+
+    pub(super) fn planes(&self) -> Range<u32> {
+        self.boxes..self.boxes + self.planes
+    }
+
+    /// Boxes and planes: all that have ordinary edges.
+    pub(super) fn edged(&self) -> Range<u32> {
+        0..self.boxes + self.planes
+    }
+
+    pub(super) fn selected(&self) -> Range<u32> {
+        let first = self.boxes + self.planes;
+        first..first + self.selected
+    }
+}
+
+fn instance_buffer(device: &wgpu::Device, count: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("boxes"),
+        size: (count * size_of::<BoxInstance>()) as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}

@@ -1,0 +1,144 @@
+//! The mesh by rasterisation: what the viewport shows while nothing is traced yet. It goes to the
+//! GPU a few chunks a frame, so that the window never waits for it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use eframe::wgpu;
+use glam::Vec3;
+use wgpu::util::DeviceExt;
+
+use super::chunks::{Chunk, Chunks, sampled};
+use super::layouts::Layouts;
+use super::pipeline::{Pass, Recipe};
+use crate::scene::Geometry;
+
+/// The most bytes that go to the GPU in one frame: a few milliseconds of work.
+const BYTES_PER_FRAME: usize = 4 << 20;
+
+/// A scene to be rasterised. Made once a scene, and shared by all viewports.
+#[derive(Debug)]
+pub struct RasterMesh {
+    generation: u64,
+    geometry: Arc<Geometry>,
+    uploaded: AtomicUsize,
+}
+
+impl RasterMesh {
+    /// The triangles that structures hold of a scene; `generation` tells it from every other.
+    pub fn new(generation: u64, geometry: Arc<Geometry>) -> Self {
+        Self { generation, geometry, uploaded: AtomicUsize::new(0) }
+    }
+
+    /// How many triangles are on the GPU, and how many there are. Where the two differ another frame
+    /// is needed: triangles that are not there yet are not drawn.
+    pub fn progress(&self) -> (usize, usize) {
+        (self.uploaded.load(Ordering::Relaxed), self.geometry.live_count())
+    }
+
+    pub(super) fn generation(&self) -> u64 {
+        self.generation
+    }
+}
+
+/// A mesh and how it is drawn.
+#[derive(Clone, Debug)]
+pub struct Raster {
+    /// The mesh.
+    pub mesh: Arc<RasterMesh>,
+    /// Gamma-encoded, before shading.
+    pub color: [u8; 4],
+    /// Draw about so many triangles, evenly sampled; `usize::MAX` for all.
+    pub max_triangles: usize,
+}
+
+/// Draws meshes.
+pub(super) struct RasterPipeline(wgpu::RenderPipeline);
+
+impl RasterPipeline {
+    pub(super) fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        let vertices = wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vec3>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+        };
+        let recipe = Recipe {
+            label: "raster",
+            source: concat!(include_str!("view.wgsl"), include_str!("raster.wgsl")),
+            groups: &[&layouts.uniform],
+            vertices: &[Some(vertices)],
+            pass: Pass::Solid,
+            ..Recipe::default()
+        };
+        Self(recipe.make(device))
+    }
+
+    /// Draws what is there of the mesh; the view is group 0.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, buffers: &MeshBuffers, max_triangles: usize) {
+        pass.set_pipeline(&self.0);
+        let total = buffers.mesh.geometry.live_count();
+        for chunk in &buffers.chunks {
+            pass.set_vertex_buffer(0, chunk.positions.slice(..));
+            pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint16);
+            pass.draw_indexed(0..3 * sampled(chunk.triangles, total, max_triangles), 0, 0..1);
+        }
+    }
+}
+
+/// A mesh on the GPU, as far as it is there.
+pub(super) struct MeshBuffers {
+    mesh: Arc<RasterMesh>,
+    chunks: Vec<ChunkBuffers>,
+    /// What is still to come; `None` once all is there.
+    rest: Option<Chunks>,
+}
+
+struct ChunkBuffers {
+    positions: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    triangles: usize,
+}
+
+impl MeshBuffers {
+    pub(super) fn new(mesh: &Arc<RasterMesh>) -> Self {
+        mesh.uploaded.store(0, Ordering::Relaxed);
+        Self { mesh: Arc::clone(mesh), chunks: Vec::new(), rest: Some(Chunks::new(Arc::clone(&mesh.geometry))) }
+    }
+
+    pub(super) fn generation(&self) -> u64 {
+        self.mesh.generation
+    }
+
+    /// How much of it is there: changes as long as there is something to redraw for.
+    pub(super) fn chunk_count(&self) -> usize {
+        self.chunks.len()
+    }
+
+    /// Brings some more of it there.
+    pub(super) fn advance(&mut self, device: &wgpu::Device) {
+        let Some(rest) = &mut self.rest else { return };
+        let mut bytes = 0;
+        while bytes < BYTES_PER_FRAME {
+            let Some(chunk) = rest.next() else {
+                self.rest = None;
+                return;
+            };
+            bytes += chunk.bytes();
+            self.mesh.uploaded.fetch_add(chunk.triangles.len(), Ordering::Relaxed);
+            self.chunks.push(ChunkBuffers::new(device, &chunk));
+        }
+    }
+}
+
+impl ChunkBuffers {
+    fn new(device: &wgpu::Device, chunk: &Chunk) -> Self {
+        let make = |label, contents, usage| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+        };
+        Self {
+            positions: make("mesh positions", bytemuck::cast_slice(&chunk.positions), wgpu::BufferUsages::VERTEX),
+            indices: make("mesh indices", bytemuck::cast_slice(&chunk.triangles), wgpu::BufferUsages::INDEX),
+            triangles: chunk.triangles.len(),
+        }
+    }
+}

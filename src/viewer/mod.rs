@@ -1,0 +1,5 @@
+//! The window.
+
+pub mod format;
+pub mod gpu;
+pub mod theme;

@@ -1,0 +1,87 @@
+//! Colours for numbers: viridis for heat and for depth, blue to white to orange for differences.
+
+use std::ops::RangeInclusive;
+
+use eframe::egui::Color32;
+
+/// The colour of `t` in 0..=1, gamma-encoded.
+///
+/// Viridis is by Stéfan van der Walt and Nathaniel Smith for matplotlib, CC0. The polynomial is Matt
+/// Zucker's fit to its table (2019, CC0), off by at most 5/255.
+pub fn viridis(t: f32) -> [f32; 3] {
+    const C: [[f32; 3]; 7] = [
+        [0.277_727_33, 0.005_407_345, 0.334_099_8],
+        [0.105_093_04, 1.404_613_5, 1.384_590_1],
+        [-0.330_861_83, 0.214_847_56, 0.095_095_165],
+        [-4.634_230_5, -5.799_101, -19.332_44],
+        [6.228_27, 14.179_934, 56.690_55],
+        [4.776_385, -13.745_145, -65.353_035],
+        [-5.435_456, 4.645_852_6, 26.312_435],
+    ];
+    let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
+    std::array::from_fn(|k| C.iter().rev().fold(0.0, |sum, c| sum * t + c[k]).clamp(0.0, 1.0))
+}
+
+/// Where a level lies on viridis: from 0.35 (the darkest that lines can be told on the dark
+/// background) to 1 over the levels that are shown, one even step a level.
+pub fn depth_position(level: u32, shown: &RangeInclusive<u32>) -> f32 {
+    let (first, last) = (*shown.start(), *shown.end());
+    let t = if last > first { level.clamp(first, last).abs_diff(first) as f32 / (last - first) as f32 } else { 0.5 };
+    0.35 + 0.65 * t
+}
+
+/// The colour of a level of a tree when the levels `shown` are on the screen.
+pub fn depth_color(level: u32, shown: &RangeInclusive<u32>) -> Color32 {
+    opaque(viridis(depth_position(level, shown)))
+}
+
+/// The colour of a signed difference in -1..=1: blue below, white at 0, orange above.
+pub fn difference(t: f32) -> Color32 {
+    const BLUE: [f32; 3] = [0.13, 0.40, 0.67];
+    const WHITE: [f32; 3] = [0.97, 0.97, 0.97];
+    const ORANGE: [f32; 3] = [0.80, 0.40, 0.05];
+    let t = if t.is_nan() { 0.0 } else { t.clamp(-1.0, 1.0) };
+    let end = if t < 0.0 { BLUE } else { ORANGE };
+    opaque(std::array::from_fn(|k| WHITE[k] + (end[k] - WHITE[k]) * t.abs()))
+}
+
+fn opaque(rgb: [f32; 3]) -> Color32 {
+    let [r, g, b] = rgb.map(|v| (v * 255.0).round() as u8);
+    Color32::from_rgb(r, g, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn viridis_meets_its_table() {
+        let table =
+            [(0.0, [68, 1, 84]), (0.25, [59, 82, 139]), (0.5, [33, 145, 140]), (0.75, [94, 201, 98]), (1.0, [253, 231, 37])];
+        for (t, rgb) in table {
+            for (k, expected) in rgb.into_iter().enumerate() {
+                let got = viridis(t)[k] * 255.0;
+                assert!((got - expected as f32).abs() <= 5.0, "{t}: {got} for {expected}");
+            }
+        }
+        assert_eq!(viridis(f32::NAN), viridis(0.0));
+        assert_eq!(viridis(7.0), viridis(1.0));
+    }
+
+    #[test]
+    fn each_level_is_one_even_step() {
+        let shown = 3..=7;
+        assert_eq!(depth_position(3, &shown), 0.35);
+        assert_eq!(depth_position(7, &shown), 1.0);
+        let steps: Vec<f32> = (4..=7).map(|l| depth_position(l, &shown) - depth_position(l - 1, &shown)).collect();
+        assert!(steps.iter().all(|s| (s - steps[0]).abs() < 1e-6));
+        assert_eq!(depth_color(5, &(5..=5)), opaque(viridis(0.675)));
+    }
+
+    #[test]
+    fn no_difference_is_white() {
+        assert_eq!(difference(0.0), Color32::from_rgb(247, 247, 247));
+        assert!(difference(-1.0).b() > difference(-1.0).r());
+        assert!(difference(1.0).r() > difference(1.0).b());
+    }
+}
