@@ -5,6 +5,7 @@
 
 mod disk;
 mod pace;
+mod ply;
 mod stl;
 mod text;
 
@@ -39,7 +40,7 @@ pub trait Siblings: Sync {
 
 /// Every format there is, in the order in which they are listed to the user.
 pub fn loaders() -> &'static [&'static dyn Loader] {
-    &[&stl::Stl]
+    &[&ply::Ply, &stl::Stl]
 }
 
 /// Reads the model file at `path`, choosing the loader by the file's ending.
@@ -67,6 +68,17 @@ fn mesh_bytes(mesh: &Mesh) -> u64 {
     let lists = mesh.positions.len() * 12 + mesh.triangles.len() * 12 + mesh.normals.len() * 12;
     let more = mesh.uvs.len() * 8 + mesh.colors.len() * 16 + mesh.name.len();
     (lists + more + size_of::<Mesh>()) as u64
+}
+
+/// From the sRGB curve (IEC 61966-2-1), which stored colours follow unless their format says
+/// otherwise, to linear.
+fn linear_from_srgb(rgb: [f32; 3]) -> [f32; 3] {
+    rgb.map(unit).map(|c| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })
+}
+
+/// Clamped to 0 to 1; NaN is 0.
+fn unit(x: f32) -> f32 {
+    if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 
 #[cfg(test)]

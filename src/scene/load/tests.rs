@@ -35,9 +35,22 @@ pub(super) fn check(scene: &Scene) {
     assert!(scene.instances.iter().all(|i| i.mesh < scene.meshes.len()));
 }
 
+/// The corners of every triangle, instance by instance, in the world.
+pub(super) fn soup(scene: &Scene) -> Vec<[[f32; 3]; 3]> {
+    let of = |i: &crate::scene::Instance| {
+        let (mesh, t) = (&scene.meshes[i.mesh], i.world_from_object);
+        mesh.triangles
+            .iter()
+            .map(move |tri| tri.map(|v| t.transform_point3(mesh.positions[v as usize]).to_array()))
+            .collect::<Vec<_>>()
+    };
+    scene.instances.iter().flat_map(of).collect()
+}
+
 #[test]
 fn the_ending_chooses_the_loader_in_any_case() {
     let id = |name: &str| by_extension(Path::new(name)).map(|loader| loader.id()).map_err(|reason| reason.to_string());
+    assert_eq!(id("Würfel.Ply"), Ok("ply"));
     assert_eq!(id("a.tar.stl"), Ok("stl"));
     assert!(id("a.off").is_err_and(|text| text.starts_with("the format 'off' is not known")));
     assert!(id("noending").is_err_and(|text| text.contains("'noending'")));
@@ -104,4 +117,5 @@ fn numbers_are_read_as_c_writes_them() {
     }
     assert!(["nan", "-nan", "1.#QNAN", "-1.#IND", "-nan(ind)"].iter().all(|w| float(w.as_bytes()).is_some_and(f32::is_nan)));
     assert!(["", "x", "1,5", "0x1", "1f"].iter().all(|w| float(w.as_bytes()).is_none()));
+    assert_eq!(linear_from_srgb([f32::NAN, 2.0, 0.0]), [0.0, 1.0, 0.0]);
 }
