@@ -4,6 +4,7 @@
 //! The bytes come from anywhere: whoever reads them looks at each count before trusting it.
 
 mod disk;
+mod obj;
 mod pace;
 mod ply;
 mod stl;
@@ -40,7 +41,7 @@ pub trait Siblings: Sync {
 
 /// Every format there is, in the order in which they are listed to the user.
 pub fn loaders() -> &'static [&'static dyn Loader] {
-    &[&ply::Ply, &stl::Stl]
+    &[&obj::Obj, &ply::Ply, &stl::Stl]
 }
 
 /// Reads the model file at `path`, choosing the loader by the file's ending.

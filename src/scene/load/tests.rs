@@ -52,6 +52,7 @@ fn the_ending_chooses_the_loader_in_any_case() {
     let id = |name: &str| by_extension(Path::new(name)).map(|loader| loader.id()).map_err(|reason| reason.to_string());
     assert_eq!(id("Würfel.Ply"), Ok("ply"));
     assert_eq!(id("a.tar.stl"), Ok("stl"));
+    assert_eq!(id("a.obj"), Ok("obj"));
     assert!(id("a.off").is_err_and(|text| text.starts_with("the format 'off' is not known")));
     assert!(id("noending").is_err_and(|text| text.contains("'noending'")));
 }
