@@ -4,6 +4,7 @@
 //! The bytes come from anywhere: whoever reads them looks at each count before trusting it.
 
 mod disk;
+mod gltf;
 mod obj;
 mod pace;
 mod ply;
@@ -41,7 +42,7 @@ pub trait Siblings: Sync {
 
 /// Every format there is, in the order in which they are listed to the user.
 pub fn loaders() -> &'static [&'static dyn Loader] {
-    &[&obj::Obj, &ply::Ply, &stl::Stl]
+    &[&gltf::Gltf, &obj::Obj, &ply::Ply, &stl::Stl]
 }
 
 /// Reads the model file at `path`, choosing the loader by the file's ending.

@@ -50,6 +50,7 @@ pub(super) fn soup(scene: &Scene) -> Vec<[[f32; 3]; 3]> {
 #[test]
 fn the_ending_chooses_the_loader_in_any_case() {
     let id = |name: &str| by_extension(Path::new(name)).map(|loader| loader.id()).map_err(|reason| reason.to_string());
+    assert_eq!(id("a/B.GLB"), Ok("gltf"));
     assert_eq!(id("Würfel.Ply"), Ok("ply"));
     assert_eq!(id("a.tar.stl"), Ok("stl"));
     assert_eq!(id("a.obj"), Ok("obj"));
