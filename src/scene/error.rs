@@ -43,8 +43,10 @@ pub enum Reason {
         what: String,
     },
     /// The content needs an extension that Boxwood cannot read.
-    #[error("it needs {extension}, which Boxwood can't read. {remedy}")]
+    #[error("{place} needs {extension}, which Boxwood can't read. {remedy}")]
     Unsupported {
+        /// What of the model: `mesh 3`, or `it`.
+        place: String,
         /// The extension's registered name.
         extension: String,
         /// What the user can do.

@@ -1,6 +1,8 @@
 //! Scenes and rays that several test files share.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
+pub mod tiny;
+
 use std::sync::Arc;
 
 use boxwood::accel::registry::Entry;

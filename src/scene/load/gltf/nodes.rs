@@ -1,0 +1,106 @@
+//! The node hierarchy, flattened to where meshes stand.
+
+use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A, Vec3A};
+use gltf::json::scene::Node;
+use gltf::json::{Index, Root};
+
+use crate::scene::Reason;
+
+/// A mesh of the document, and where it stands.
+pub(super) type Placement = (usize, Affine3A);
+
+/// Walks the scene depth first. Transforms are multiplied in 64 bits and rounded once.
+pub(super) fn placements(root: &Root, warnings: &mut Vec<String>) -> Result<Vec<Placement>, Reason> {
+    let mut placements = Vec::new();
+    // A stack of our own: a chain of nodes may be as long as the file.
+    let mut stack: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
+    let mut visited = vec![false; root.nodes.len()];
+    let mut left_out = LeftOut::default();
+    while let Some((index, world_from_parent)) = stack.pop() {
+        let place = format!("node {}", index.value());
+        let node = root.get(index).ok_or_else(|| Reason::malformed(&place, "there is no such node"))?;
+        if std::mem::replace(&mut visited[index.value()], true) {
+            return Err(Reason::malformed(&place, "it has two parents, or is its own ancestor"));
+        }
+        let world_from_node = world_from_parent * transform(node);
+        if let Some(mesh) = node.mesh {
+            root.get(mesh).ok_or_else(|| Reason::malformed(&place, format_args!("there is no mesh {}", mesh.value())))?;
+            placements.push((mesh.value(), narrow(&world_from_node)));
+            left_out.count(node);
+        }
+        stack.extend(node.children.iter().flatten().rev().map(|child| (*child, world_from_node)));
+    }
+    warnings.extend(left_out.sentences());
+    if root.nodes.is_empty() && !root.meshes.is_empty() {
+        // Placed nowhere: show each once, where it is.
+        placements.extend((0..root.meshes.len()).map(|mesh| (mesh, Affine3A::IDENTITY)));
+    }
+    Ok(placements)
+}
+
+/// The nodes that the walk begins with: of the default scene, or else the first, or else those
+/// that are nobody's child.
+fn roots(root: &Root) -> Result<Vec<Index<Node>>, Reason> {
+    let scene = match root.scene {
+        Some(index) => Some(root.get(index).ok_or_else(|| Reason::malformed("scene", "the default scene does not exist"))?),
+        None => root.scenes.first(),
+    };
+    if let Some(scene) = scene {
+        return Ok(scene.nodes.clone());
+    }
+    let mut is_child = vec![false; root.nodes.len()];
+    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+        if let Some(is_child) = is_child.get_mut(child.value()) {
+            *is_child = true;
+        }
+    }
+    let indices = (0..).map(Index::new).zip(is_child);
+    Ok(indices.filter(|(_, is_child)| !is_child).map(|(index, _)| index).collect())
+}
+
+fn transform(node: &Node) -> DAffine3 {
+    if let Some(m) = node.matrix {
+        let column = |c: usize| DVec3::new(m[4 * c].into(), m[4 * c + 1].into(), m[4 * c + 2].into());
+        return DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) };
+    }
+    let vector = |v: Option<[f32; 3]>, or: DVec3| v.map_or(or, |v| DVec3::from_array(v.map(f64::from)));
+    let [x, y, z, w] = node.rotation.unwrap_or_default().0.map(f64::from);
+    let rotation = DQuat::from_xyzw(x, y, z, w);
+    // Written with few digits, it is not quite of unit length, and would scale.
+    let length = rotation.length();
+    let rotation = if length > 0.0 { rotation / length } else { DQuat::IDENTITY };
+    DAffine3::from_scale_rotation_translation(vector(node.scale, DVec3::ONE), rotation, vector(node.translation, DVec3::ZERO))
+}
+
+fn narrow(t: &DAffine3) -> Affine3A {
+    let column = |c: DVec3| Vec3A::from(c.as_vec3());
+    let m = &t.matrix3;
+    let matrix3 = Mat3A::from_cols(column(m.x_axis), column(m.y_axis), column(m.z_axis));
+    Affine3A { matrix3, translation: column(t.translation) }
+}
+
+/// What moves meshes and is not read.
+#[derive(Default)]
+struct LeftOut {
+    skinned: usize,
+    morphed: usize,
+    instanced: usize,
+}
+
+impl LeftOut {
+    fn count(&mut self, node: &Node) {
+        let instanced = |e: &gltf::json::extensions::scene::Node| e.others.contains_key("EXT_mesh_gpu_instancing");
+        self.skinned += usize::from(node.skin.is_some());
+        self.morphed += usize::from(node.weights.as_ref().is_some_and(|w| w.iter().any(|w| *w != 0.0)));
+        self.instanced += usize::from(node.extensions.as_ref().is_some_and(instanced));
+    }
+
+    fn sentences(&self) -> impl Iterator<Item = String> + use<> {
+        let left_out = [
+            ("Meshes with a skeleton are shown as they were modelled", self.skinned),
+            ("Meshes with morph targets are shown without them", self.morphed),
+            ("Meshes repeated by EXT_mesh_gpu_instancing are shown once", self.instanced),
+        ];
+        left_out.into_iter().filter(|(_, n)| *n > 0).map(|(what, n)| format!("{what}: {n}."))
+    }
+}
