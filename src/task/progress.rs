@@ -23,7 +23,7 @@ struct Started {
 }
 
 /// A phase that is over, or the one that runs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Phase {
     /// A short name in the imperative or the progressive: `parse`, `bin`, `sort`.
     pub name: &'static str,

@@ -1,0 +1,202 @@
+//! Fair timing: every contestant traces the same rays, on the same threads, in turns.
+//!
+//! A round of a contestant is one pass over the rays. Rounds are interleaved A B C, B C A, C A B,
+//! so that whatever drifts meanwhile (clock speed, temperature, another program) meets everybody.
+//! A contestant leaves when it has its rounds and its seconds; the first, untimed round warms up
+//! caches and pages. A structure that is too slow for that traces an evenly spread part of the rays.
+
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::counting;
+use super::estimate::{rays_within, secs_per_ray};
+use super::rays::RaySet;
+use super::sample::pick;
+use super::timing::Timing;
+use crate::accel::{Accel, Mode};
+use crate::geometry::Ray;
+use crate::task::{Cancel, Cancelled, Pool, Progress};
+
+/// A structure that takes part.
+#[derive(Clone)]
+pub struct Contestant {
+    /// What its row is called.
+    pub id: String,
+    /// The structure.
+    pub accel: Arc<dyn Accel>,
+}
+
+/// On which terms structures are compared. Every table says which.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fairness {
+    /// Scalar code, one ray at a time, the same triangle test: what is compared is the structure.
+    #[default]
+    LikeForLike,
+    /// Each structure in the fastest form there is of it. As long as all forms are scalar and trace
+    /// one ray at a time, that is the same.
+    Best,
+}
+
+impl Fairness {
+    /// The name in tables.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::LikeForLike => "like for like (scalar, single ray, same triangle test)",
+            Self::Best => "each at its best",
+        }
+    }
+}
+
+/// How long and on which terms to measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasureOptions {
+    /// The fewest timed rounds of a structure.
+    pub min_rounds: usize,
+    /// The least seconds of timed tracing of a structure.
+    pub min_secs: f64,
+    /// The most seconds a structure shall take, warm-up included; beyond it traces fewer rays.
+    pub cap_secs: f64,
+    /// The terms.
+    pub fairness: Fairness,
+}
+
+impl Default for MeasureOptions {
+    fn default() -> Self {
+        Self { min_rounds: 5, min_secs: 1.0, cap_secs: 20.0, fairness: Fairness::LikeForLike }
+    }
+}
+
+/// Measures all contestants with one set of rays; the rows are in the contestants' order.
+///
+/// The caller sees to it that nothing else keeps the processors busy.
+///
+/// # Errors
+/// [`Cancelled`] within 100 ms of the request.
+pub fn measure(
+    contestants: &[Contestant],
+    set: &RaySet,
+    options: &MeasureOptions,
+    pool: &Pool,
+    cancel: &Cancel,
+    progress: &Progress,
+) -> Result<Vec<Timing>, Cancelled> {
+    let lanes = contestants.len() as u64;
+    progress.start("warm up", lanes);
+    let mut all =
+        contestants.iter().map(|c| Lane::warmed_up(c, set, options, pool, cancel, progress)).collect::<Result<Vec<_>, _>>()?;
+
+    progress.start("measure", lanes * DONE);
+    for first in 0.. {
+        if all.iter().all(|lane| lane.share_done(options) >= DONE) {
+            break;
+        }
+        for i in 0..all.len() {
+            let lane = &mut all[(first + i) % contestants.len()];
+            let before = lane.share_done(options);
+            if before < DONE {
+                lane.round(set.mode, pool, cancel)?;
+                progress.advance(lane.share_done(options) - before);
+            }
+        }
+    }
+
+    progress.start("count", lanes);
+    let rows = all.iter().map(|lane| lane.counted(set, pool, cancel, progress)).collect();
+    progress.finish();
+    rows
+}
+
+/// What [`Lane::share_done`] is of a lane that has enough.
+const DONE: u64 = 1000;
+
+/// A contestant with its rays and the rounds it has done.
+struct Lane<'a> {
+    contestant: &'a Contestant,
+    /// The whole set, or a part of it.
+    rays: Cow<'a, [Ray]>,
+    of: usize,
+    secs_per_ray: f64,
+    hits: u64,
+    secs: Vec<f64>,
+}
+
+impl<'a> Lane<'a> {
+    fn warmed_up(
+        contestant: &'a Contestant,
+        set: &'a RaySet,
+        options: &MeasureOptions,
+        pool: &Pool,
+        cancel: &Cancel,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let secs_per_ray = secs_per_ray(contestant, set, pool, cancel)?;
+        let most = rays_within(options.cap_secs, options.min_rounds + 1, secs_per_ray);
+        let rays = if most < set.rays.len() { Cow::Owned(pick(&set.rays, most)) } else { Cow::Borrowed(&set.rays[..]) };
+        let hits = trace_all(contestant, &rays, set.mode, pool, cancel)?;
+        progress.advance(1);
+        Ok(Self { contestant, rays, of: set.rays.len(), secs_per_ray, hits, secs: Vec::new() })
+    }
+
+    fn round(&mut self, mode: Mode, pool: &Pool, cancel: &Cancel) -> Result<(), Cancelled> {
+        let start = Instant::now();
+        trace_all(self.contestant, &self.rays, mode, pool, cancel)?;
+        self.secs.push(start.elapsed().as_secs_f64());
+        Ok(())
+    }
+
+    /// How much of what it needs it has, in thousandths; no rays need nothing.
+    fn share_done(&self, options: &MeasureOptions) -> u64 {
+        if self.rays.is_empty() {
+            return DONE;
+        }
+        let rounds = self.secs.len() as f64 / options.min_rounds.max(1) as f64;
+        let secs = self.secs.iter().sum::<f64>() / options.min_secs.max(1e-9);
+        crate::geometry::num::floor_index(rounds.min(secs).min(1.0) * 1000.0, 1000) as u64
+    }
+
+    fn counted(&self, set: &RaySet, pool: &Pool, cancel: &Cancel, progress: &Progress) -> Result<Timing, Cancelled> {
+        let (counts, counted) = counting::count(self.contestant, set, counting::how_many(self.secs_per_ray), pool, cancel)?;
+        progress.advance(1);
+        let row = Timing::of_rounds(&self.contestant.id, self.rays.len(), self.of, self.hits, &self.secs);
+        let mean = |sum: u64| sum as f64 / counted as f64;
+        Ok(Timing {
+            nodes_per_ray: mean(counts.nodes),
+            prims_per_ray: mean(counts.prims),
+            counted,
+            capped: self.why_capped(),
+            ..row
+        })
+    }
+
+    fn why_capped(&self) -> Option<String> {
+        if self.of == 0 {
+            return Some("there are no such rays: nothing is hit in this view".to_owned());
+        }
+        let whole = self.secs_per_ray * self.of as f64;
+        let part = self.rays.len();
+        (part < self.of).then(|| format!("{part} of {} rays, spread evenly: all would take {whole:.1} s a round", self.of))
+    }
+}
+
+/// Traces the rays in chunks on the pool; returns how many hit something. Hits go to a buffer of
+/// each thread's, small enough for its cache, so that writing them costs every structure the same
+/// little.
+pub(super) fn trace_all(
+    contestant: &Contestant,
+    rays: &[Ray],
+    mode: Mode,
+    pool: &Pool,
+    cancel: &Cancel,
+) -> Result<u64, Cancelled> {
+    // Small enough that no thread waits long for the last one, large enough to cost nothing.
+    let chunk = (rays.len() / (pool.threads() * 32)).clamp(1, 4096);
+    let trace = |hits: &mut Vec<Option<crate::accel::Hit>>, rays: &[Ray]| {
+        hits.resize(rays.len(), None);
+        contestant.accel.trace(rays, mode, hits, cancel)?;
+        Ok(hits.iter().filter(|hit| hit.is_some()).count() as u64)
+    };
+    pool.run(|| rays.par_chunks(chunk).map_init(Vec::new, trace).try_reduce(|| 0, |a, b| Ok(a + b)))
+}

@@ -1,0 +1,101 @@
+//! The rows that tables and JSON are made of. Field names here are the schema: they stay.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+use super::building::BuiltRow;
+use super::facts::{MachineFacts, SceneFacts};
+use super::rays::RayKind;
+use super::timing::Timing;
+use crate::accel::MemoryPart;
+use crate::accel::params::{ParamValues, Value};
+use crate::accel::stats::Stats;
+use crate::geometry::tri::TestKind;
+use crate::task::Phase;
+
+/// Everything that `stats` and `compare` say.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The model.
+    pub scene: SceneFacts,
+    /// The machine.
+    pub machine: MachineFacts,
+    /// One row for each structure.
+    pub structures: Vec<StructureRow>,
+}
+
+/// A structure, as it was built and as it traced.
+#[derive(Clone, Debug, Serialize)]
+pub struct StructureRow {
+    /// The registered name.
+    pub id: String,
+    /// Every parameter and its value.
+    pub params: BTreeMap<&'static str, Value>,
+    /// The triangle test.
+    pub test: TestKind,
+    /// What there is to say once it is built.
+    #[serde(flatten)]
+    pub built: Option<BuiltFacts>,
+    /// Why it is not, in words for the user.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// How it traced each kind of ray; empty where none was asked for.
+    pub rays: BTreeMap<RayKind, Timing>,
+}
+
+/// A built structure in figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BuiltFacts {
+    /// Wall-clock seconds of the build.
+    pub build_secs: f64,
+    /// The same by phase.
+    pub phases: Vec<Phase>,
+    /// Bytes of the structure, the shared geometry not counted.
+    pub bytes: u64,
+    /// The same by part.
+    pub memory: Vec<MemoryPart>,
+    /// Nodes and cells, leaves among them.
+    pub nodes: u64,
+    /// Leaves, empty ones among them.
+    pub leaves: u64,
+    /// Leaves without a reference.
+    pub empty_leaves: u64,
+    /// Steps from the root to the deepest leaf.
+    pub max_depth: u32,
+    /// References in all leaves.
+    pub references: u64,
+    /// The SAH cost; comparable within one family only.
+    pub sah: f64,
+    /// Leaves with k references at k; the last entry counts all larger ones.
+    pub leaf_sizes: Vec<u64>,
+    /// Leaves at each depth.
+    pub leaf_depths: Vec<u64>,
+}
+
+impl BuiltFacts {
+    /// Of a build and the walk over what came of it.
+    pub fn of(row: &BuiltRow, stats: Stats) -> Self {
+        Self {
+            build_secs: row.build_secs,
+            phases: row.phases.clone(),
+            bytes: stats.bytes(),
+            memory: stats.memory,
+            nodes: stats.nodes,
+            leaves: stats.leaves,
+            empty_leaves: stats.empty_leaves,
+            max_depth: stats.max_depth,
+            references: stats.references,
+            sah: stats.sah,
+            leaf_sizes: stats.leaf_sizes,
+            leaf_depths: stats.leaf_depths,
+        }
+    }
+}
+
+impl StructureRow {
+    /// A row that knows only what shall be built.
+    pub fn new(id: &str, params: &ParamValues, test: TestKind) -> Self {
+        let params = params.iter().map(|(param, value)| (param.id, value)).collect();
+        Self { id: id.to_owned(), params, test, built: None, error: None, rays: BTreeMap::new() }
+    }
+}
