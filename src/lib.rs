@@ -7,6 +7,8 @@
 //! ```
 
 pub mod accel;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod geometry;
 pub mod lab;
 pub mod render;
