@@ -27,11 +27,10 @@ pub fn watch<R>(title: &str, progress: &Progress, work: impl FnOnce() -> R) -> R
 /// Draws until the other end of the channel is dropped.
 fn draw_until(ended: &mpsc::Receiver<()>, title: &str, progress: &Progress) {
     const STEPS: u64 = 1000;
-    let bar = ProgressBar::new(STEPS);
     let known = ProgressStyle::with_template("{prefix} {msg:12} {bar:40} {percent:>3} %");
     let unknown = ProgressStyle::with_template("{prefix} {msg:12} {elapsed}");
     let (Ok(known), Ok(unknown)) = (known, unknown) else { return };
-    bar.set_prefix(title.to_owned());
+    let bar = ProgressBar::new(STEPS).with_style(unknown.clone()).with_prefix(title.to_owned());
     while ended.recv_timeout(Duration::from_millis(100)) == Err(RecvTimeoutError::Timeout) {
         let now = progress.snapshot();
         bar.set_style(if now.fraction.is_some() { known.clone() } else { unknown.clone() });

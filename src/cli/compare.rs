@@ -56,9 +56,9 @@ pub struct Args {
 
 /// What is printed as JSON.
 #[derive(Serialize)]
-struct Comparison {
+struct Comparison<'a> {
     #[serde(flatten)]
-    report: Report,
+    report: &'a Report,
     fairness: Fairness,
     size: [u32; 2],
 }
@@ -80,12 +80,9 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         time(args, &model, &contestants, &mut report, &cx)?;
     }
     let fairness = args.options().fairness;
-    if args.json {
-        print_json(&Comparison { report: report.clone(), fairness, size: [args.size.width, args.size.height] })?;
-    } else {
-        print(&text(args, &report))?;
-    }
-    stats::all_failed(&report)
+    let size = [args.size.width, args.size.height];
+    let object = Comparison { report: &report, fairness, size };
+    stats::print_report(&report, || if args.json { print_json(&object) } else { print(&text(args, &report)) })
 }
 
 impl Args {

@@ -39,12 +39,17 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         structures.push(row(entry, &args.build, params, &model, &cx)?.0);
     }
     let report = Report { scene: model.facts(), machine: cx.machine(), structures };
-    if args.json {
-        print_json(&report)?
-    } else {
-        print(&text(&report))?
+    print_report(&report, || if args.json { print_json(&report) } else { print(&text(&report)) })
+}
+
+/// Prints, and fails if nothing could be built. A single reason needs no table around it.
+pub fn print_report(report: &Report, print: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+    let reasons: Vec<&str> = report.structures.iter().filter_map(|row| row.error.as_deref()).collect();
+    match reasons[..] {
+        [reason] if report.structures.len() == 1 => Err(Failure::Other(anyhow::anyhow!("{reason}"))),
+        _ if reasons.len() < report.structures.len() => print(),
+        _ => print().and(Err(Failure::Other(anyhow::anyhow!("none of the structures could be built")))),
     }
-    all_failed(&report)
 }
 
 /// Builds a structure and looks at it. One that cannot be built is a row with the reason.
@@ -67,15 +72,6 @@ pub fn row(
             row.error = Some(error.to_string());
             Ok((row, None))
         }
-    }
-}
-
-/// A failure where there is nothing but reasons.
-pub fn all_failed(report: &Report) -> Result<(), Failure> {
-    match &report.structures[..] {
-        rows if rows.iter().any(|row| row.error.is_none()) => Ok(()),
-        [row] => Err(Failure::Other(anyhow::anyhow!("{}", row.error.as_deref().unwrap_or_default()))),
-        _ => Err(Failure::Other(anyhow::anyhow!("none of the structures could be built"))),
     }
 }
 

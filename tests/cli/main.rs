@@ -1,0 +1,6 @@
+//! The real program, driven as a shell would: what it prints, what it leaves, how it ends.
+
+mod failures;
+mod files;
+mod reports;
+mod support;
