@@ -8,6 +8,7 @@
 
 pub mod accel;
 pub mod geometry;
+pub mod job;
 pub mod lab;
 pub mod render;
 pub mod scene;
