@@ -133,7 +133,7 @@ fn vertex(
     if t.x > 0.0 && a.z > view.near {
         edge.dash_start = length(p_px - on_screen(a));
     }
-    edge.color = vec4f(mix(color.rgb, style.color.rgb, style.color.a), color.a);
+    edge.color = mix(color, vec4f(style.color.rgb, 1.0), style.color.a);
     edge.lateness = f32(instance) / view.boxes;
     edge.halo_width = halo_width;
     return edge;
