@@ -53,7 +53,7 @@ fn hidden_lines_can_be_left_out_but_the_selected_box_stays() {
     let mut hidden = one_box(256, square(-0.5));
     hidden.hidden_lines = false;
     assert_eq!(along_row(&gpu.shot("hidden_off", &hidden), 192), (0, 0));
-    let selected = Overlay { generation: 2, selected: Some(square(-0.5)), ..Overlay::default() };
+    let selected = Overlay { generation: 2, selected: Some(BoxInstance { color: [0; 4], ..square(-0.5) }), ..Overlay::default() };
     hidden.overlay = Some(Arc::new(selected));
     assert!(along_row(&gpu.shot("hidden_selected", &hidden), 192).1 > 40);
 }
