@@ -6,6 +6,7 @@ use crate::accel::params::ParamValues;
 use crate::geometry::tri::TestKind;
 use crate::render::{Mode, Range};
 use crate::scene::Camera;
+use glam::Vec2;
 
 /// One thing to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +35,8 @@ pub enum Command {
     Overlay(OverlaySettings),
     /// Look from elsewhere.
     Camera(Camera),
+    /// Say what is there: (-1, -1) is the lower left corner of the view, (1, 1) the upper right.
+    Pick(Vec2),
     /// Frame the whole model.
     FrameAll,
     /// Between perspective and orthographic.

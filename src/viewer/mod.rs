@@ -13,6 +13,7 @@ pub mod navigation;
 mod options;
 mod overlay;
 pub mod panels;
+mod pick;
 mod screenshot;
 pub mod settings;
 pub mod state;

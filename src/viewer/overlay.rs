@@ -53,7 +53,8 @@ struct Found {
 struct Collector<'a> {
     wanted: &'a Wanted,
     ruler: Ruler,
-    flat: bool,
+    /// Cells along each axis, of a grid.
+    resolution: Option<[u32; 3]>,
     found: Vec<Found>,
     total: usize,
     more: bool,
@@ -65,9 +66,9 @@ struct Collector<'a> {
 /// # Errors
 /// [`Cancelled`] if asked to stop.
 pub fn collect(accel: &dyn Accel, wanted: &Wanted, cancel: &Cancel) -> Result<Collected, Cancelled> {
-    let flat = matches!(accel.layout(), Layout::Flat { .. });
+    let resolution = if let Layout::Flat { resolution, .. } = accel.layout() { Some(resolution) } else { None };
     let ruler = Ruler::new(&wanted.view, wanted.size_px);
-    let mut collector = Collector { wanted, ruler, flat, found: Vec::new(), total: 0, more: false };
+    let mut collector = Collector { wanted, ruler, resolution, found: Vec::new(), total: 0, more: false };
     let mut looked = 0u64;
     let mut stopped = Ok(());
     walk(accel, &mut |cell| {
@@ -105,7 +106,7 @@ impl Collector<'_> {
                 self.found.push(Found { px, depth: cell.depth, bounds: plane_in(&bounds, split), plane: true });
             }
         }
-        let deeper = s.leaves_only || cell.depth < s.depth || self.flat;
+        let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
         if px < LEAST_PX && !cell.is_leaf() && deeper {
             self.more = true;
             return Descend::No;
@@ -119,10 +120,18 @@ impl Collector<'_> {
         s.boxes
             && match cell.kind {
                 CellKind::Leaf { prims: 0 } if !s.empty_cells => false,
-                _ if self.flat => leaf,
+                _ if self.resolution.is_some() => leaf && self.in_slice(cell),
                 _ if s.leaves_only => leaf,
                 _ => (s.from_depth..=s.depth).contains(&cell.depth),
             }
+    }
+
+    /// Cells of a grid are numbered from 1, x fastest.
+    fn in_slice(&self, cell: &Cell) -> bool {
+        let (s, Some([x, y, _])) = (&self.wanted.settings, self.resolution) else { return true };
+        let index = cell.id.node.saturating_sub(1);
+        let at = [index % x, index / x % y, index / (x * y)];
+        s.slice == 0 || at.get(s.slice_axis).is_none_or(|layer| layer + 1 == s.slice)
     }
 
     /// The largest on the screen, as many as are drawn fluently; deeper levels over higher ones.

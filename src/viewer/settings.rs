@@ -71,13 +71,27 @@ pub struct OverlaySettings {
     pub depth: u32,
     /// Shows also the levels above, from this one on; equal to `depth` for one level.
     pub from_depth: u32,
+    /// Of a grid: one layer of cells along `slice_axis`, from 1; 0 for all.
+    pub slice: u32,
+    /// 0, 1 or 2 for x, y or z.
+    pub slice_axis: usize,
     /// Lines behind the surface.
     pub hidden_lines: bool,
 }
 
 impl Default for OverlaySettings {
     fn default() -> Self {
-        Self { boxes: true, leaves_only: false, planes: true, empty_cells: false, depth: 3, from_depth: 3, hidden_lines: true }
+        Self {
+            boxes: true,
+            leaves_only: false,
+            planes: true,
+            empty_cells: false,
+            depth: 3,
+            from_depth: 3,
+            slice: 0,
+            slice_axis: 2,
+            hidden_lines: true,
+        }
     }
 }
 

@@ -12,14 +12,16 @@ use super::kept::{Built, Kept, Key};
 use super::model::Model;
 use super::navigation;
 use super::overlay::{Collected, Wanted};
+use super::pick::Picked;
 use super::settings::Settings;
 use super::timings::Timings;
-use super::workers::{self, Building, Collecting, Counting, Loading, Measuring, Plan, Shared};
+use super::workers::{self, Building, Collecting, Counting, Loading, Measuring, Picking, Plan, Shared};
 use crate::accel::{BuildError, cell};
 use crate::job::Outcome;
 use crate::render::{self, Mode, Picture, Range, Renderer, Request};
 use crate::scene::Camera;
 use crate::task::Pool;
+use glam::Vec2;
 
 /// How long the window says what a switch of structures changed.
 const CHANGE_SHOWN: Duration = Duration::from_secs(3);
@@ -44,6 +46,8 @@ pub struct State {
     pub collected: Collected,
     /// The table of timings.
     pub timings: Timings,
+    /// What was last clicked.
+    pub picked: Option<Picked>,
     /// An error to show, until it is put away.
     pub error: Option<String>,
     /// What the last switch of structures changed, and until when it is said.
@@ -67,7 +71,8 @@ pub struct State {
     collecting: Option<(Wanted, Key, Collecting)>,
     collected_for: Option<(Wanted, Key)>,
     dialog: Box<dyn FileDialog>,
-    picking: Option<Receiver<Option<PathBuf>>>,
+    asked_for_file: Option<Receiver<Option<PathBuf>>>,
+    picking: Option<Picking>,
     renderer: Renderer,
     requested: Option<Asked>,
     /// Nodes a ray of the structure shown before, to be compared once the new one is counted.
@@ -109,6 +114,7 @@ impl State {
             overlay: None,
             collected: Collected::default(),
             timings: Timings::default(),
+            picked: None,
             error: None,
             change: None,
             asking: None,
@@ -123,6 +129,7 @@ impl State {
             collecting: None,
             collected_for: None,
             dialog,
+            asked_for_file: None,
             picking: None,
             renderer,
             requested: None,
@@ -163,7 +170,7 @@ impl State {
     pub fn carry_out(&mut self, command: Command) {
         match command {
             Command::Open(model) => self.open(model),
-            Command::OpenDialog => self.picking = Some(self.dialog.pick(Arc::clone(&self.shared.wake))),
+            Command::OpenDialog => self.asked_for_file = Some(self.dialog.pick(Arc::clone(&self.shared.wake))),
             Command::AskForPath(open) => self.asking = open.then(String::new),
             Command::CancelLoad => self.loading = None,
             Command::CancelBuild => self.cancel_build(),
@@ -188,6 +195,7 @@ impl State {
             Command::HeatRange(range) => self.range = range,
             Command::Overlay(overlay) => self.settings.overlay = overlay,
             Command::Camera(camera) => self.camera = camera,
+            Command::Pick(at) => self.pick(at),
             Command::FrameAll => self.frame_all(),
             Command::ToggleProjection => self.camera = navigation::toggle_projection(&self.camera),
             Command::MaxSamples(n) => self.settings.max_samples = n.max(1),
@@ -199,6 +207,28 @@ impl State {
             Command::Help(open) => self.help = open,
             Command::ResetLayout | Command::FullScreen | Command::Quit => {}
         }
+    }
+
+    fn pick(&mut self, at: Vec2) {
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
+        let ray = self.camera.ray(&self.camera.frame(), at, self.aspect());
+        self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), Arc::clone(&shown.accel), ray).ok();
+    }
+
+    fn advance_picking(&mut self) {
+        let Some(job) = &self.picking else { return };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(picked) => self.select(picked),
+            Outcome::Died => {}
+        }
+        self.picking = None;
+    }
+
+    /// The selected box is drawn with the others, so they are collected anew.
+    fn select(&mut self, picked: Option<Picked>) {
+        self.picked = picked;
+        self.collected_for = None;
     }
 
     fn frame_all(&mut self) {
@@ -258,8 +288,9 @@ impl State {
         if built.stats.is_none() {
             self.counting = workers::count(&self.shared, &built).ok();
         }
-        // A depth that the new structure does not have would show nothing.
+        (self.picking, self.picked) = (None, None);
         self.shown = Some(built);
+        // A depth that the new structure does not have would show nothing.
         self.clamp_depth();
     }
 
@@ -305,20 +336,21 @@ impl State {
         self.advance_load();
         self.advance_build();
         self.advance_statistics();
+        self.advance_picking();
         self.advance_measuring();
         self.refresh_picture();
         self.refresh_overlay();
     }
 
     fn advance_dialog(&mut self) {
-        match self.picking.as_ref().map(Receiver::try_recv) {
+        match self.asked_for_file.as_ref().map(Receiver::try_recv) {
             Some(Ok(path)) => {
-                self.picking = None;
+                self.asked_for_file = None;
                 if let Some(path) = path {
                     self.open(path.to_string_lossy().into_owned());
                 }
             }
-            Some(Err(std::sync::mpsc::TryRecvError::Disconnected)) => self.picking = None,
+            Some(Err(std::sync::mpsc::TryRecvError::Disconnected)) => self.asked_for_file = None,
             _ => {}
         }
     }
@@ -344,6 +376,7 @@ impl State {
         self.camera = model.first_camera(self.aspect());
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
         (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
+        (self.picking, self.picked) = (None, None);
         self.kept.clear();
         self.timings = Timings::default();
         self.range = None;
@@ -463,7 +496,8 @@ impl State {
                 Outcome::Done(Ok(mut collected)) => {
                     self.generation += 1;
                     let overlay = std::mem::take(&mut collected.overlay);
-                    self.overlay = Some(Arc::new(Overlay { generation: self.generation, ..overlay }));
+                    let selected = self.picked.as_ref().and_then(|p| p.leaf);
+                    self.overlay = Some(Arc::new(Overlay { generation: self.generation, selected, ..overlay }));
                     self.collected = collected;
                     self.collected_for = Some((wanted, key));
                 }

@@ -6,12 +6,14 @@ use std::sync::Arc;
 use super::kept::{Built, Key};
 use super::model::{self, Model};
 use super::overlay::{self, Collected, Wanted};
+use super::pick::{self, Picked};
 use crate::accel::stats::{SahWeights, Stats};
 use crate::accel::{Accel, BuildCx, BuildError};
+use crate::geometry::Ray;
 use crate::job::Job;
 use crate::lab::{Contestant, MeasureOptions, RayKind, RaySet, Timing, measure};
 use crate::render;
-use crate::scene::{Geometry, LoadError};
+use crate::scene::{Geometry, LoadError, Scene};
 use crate::task::{Budget, Cancelled, Pool};
 
 /// What every job needs: threads, memory, and a way to wake the window.
@@ -84,6 +86,14 @@ pub type Collecting = Job<Result<Collected, Cancelled>>;
 /// Starts collecting the boxes of a view.
 pub fn collect(shared: &Shared, accel: Arc<dyn Accel>, wanted: Wanted) -> std::io::Result<Collecting> {
     Job::spawn("overlay", shared.waker(), move |cancel, _| overlay::collect(accel.as_ref(), &wanted, cancel))
+}
+
+/// What was clicked, on its way.
+pub type Picking = Job<Option<Picked>>;
+
+/// Starts looking what is under a click: a ray through a structure that is none can take long.
+pub fn pick(shared: &Shared, scene: Arc<Scene>, accel: Arc<dyn Accel>, ray: Ray) -> std::io::Result<Picking> {
+    Job::spawn("pick", shared.waker(), move |_, _| pick::pick(&scene, accel.as_ref(), &ray))
 }
 
 /// What measuring brings: every structure that could be built, its figures, and why others have

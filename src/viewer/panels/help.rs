@@ -24,6 +24,7 @@ pub fn show(ui: &Ui, state: &State, commands: &mut Commands) {
             let rows = [
                 (orbit.to_owned(), "Orbit around the model"),
                 (pan.to_owned(), "Move the picture"),
+                ("Click".to_owned(), "Say what is there, and mark its leaf"),
                 ("Wheel, pinch".to_owned(), "Zoom to the pointer"),
                 ("Arrow keys".to_owned(), "Orbit, when the viewport has the focus"),
                 ("+ and -".to_owned(), "Zoom, when the viewport has the focus"),

@@ -5,6 +5,7 @@ use eframe::egui::{ComboBox, Slider, Ui};
 use super::Commands;
 use crate::accel::cell::Layout;
 use crate::accel::registry;
+use crate::geometry::Axis;
 use crate::render::Mode;
 use crate::viewer::command::Command;
 use crate::viewer::state::State;
@@ -41,9 +42,32 @@ fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
     combo.response.on_hover_text(chosen.help());
 }
 
+/// A grid has no depth: its cells are looked at in layers.
+fn slice(ui: &mut Ui, state: &State, resolution: [u32; 3], commands: &mut Commands) {
+    let before = state.settings.overlay;
+    let mut overlay = before;
+    let axis = overlay.slice_axis.min(2);
+    let slider = Slider::new(&mut overlay.slice, 0..=resolution[axis]).text("Slice");
+    ui.add(slider).on_hover_text("One layer of cells; 0 shows all of them.");
+    for (i, axis) in Axis::ALL.into_iter().enumerate() {
+        if ui
+            .selectable_label(overlay.slice_axis == i, axis.name())
+            .on_hover_text("The axis that layers are counted along.")
+            .clicked()
+        {
+            (overlay.slice_axis, overlay.slice) = (i, overlay.slice.min(resolution[i]));
+        }
+    }
+    if overlay != before {
+        commands.push(Command::Overlay(overlay));
+    }
+}
+
 fn depth(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    if !matches!(state.layout(), Some(Layout::Hierarchy | Layout::Partition)) {
-        return;
+    match state.layout() {
+        Some(Layout::Hierarchy | Layout::Partition) => {}
+        Some(Layout::Flat { resolution, .. }) => return slice(ui, state, resolution, commands),
+        None => return,
     }
     let mut overlay = state.settings.overlay;
     let deepest = deepest(state);

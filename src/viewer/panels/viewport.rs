@@ -38,6 +38,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         ui.painter().rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Inside);
     }
     captions(ui, rect, state);
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
+        commands.push(Command::Pick(in_picture(rect, at)));
+    }
     if let Some(camera) = hands(ui, &response, rect, state) {
         commands.push(Command::Camera(camera));
     }
@@ -101,6 +104,10 @@ fn captions(ui: &mut Ui, rect: Rect, state: &State) {
     }
     if state.shown.is_some() {
         caption(ui, inner.left_bottom(), Align2::LEFT_BOTTOM, &showing(state));
+    }
+    if let Some(picked) = &state.picked {
+        let above = theme::ROW + theme::GRID;
+        caption(ui, inner.left_bottom() - vec2(0.0, above), Align2::LEFT_BOTTOM, &picked.text);
     }
     if let Some(p) = state.picture.as_ref().map(|p| p.progress).filter(|p| p.step > 1) {
         let text = format!("1/{} resolution after {}", p.step, format::duration(p.secs));
@@ -195,12 +202,17 @@ fn dragged(ui: &Ui, response: &Response, state: &State, height: f32) -> Option<C
 fn wheel(ui: &Ui, response: &Response, rect: Rect, state: &State) -> Option<Camera> {
     let pointer = response.hover_pos()?;
     let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
-    let at = Vec2::new((pointer.x - rect.center().x) / rect.width(), (rect.center().y - pointer.y) / rect.height()) * 2.0;
+    let at = in_picture(rect, pointer);
     let aspect = rect.width() / rect.height();
     if pinch != 1.0 {
         return Some(navigation::zoom_by(1.0 / pinch, &state.camera, at, aspect));
     }
     (scroll != 0.0).then(|| navigation::zoom(&state.camera, scroll, at, aspect))
+}
+
+/// A point of the window in the picture: (-1, -1) lower left, (1, 1) upper right.
+fn in_picture(rect: Rect, at: Pos2) -> Vec2 {
+    Vec2::new((at.x - rect.center().x) / rect.width(), (rect.center().y - at.y) / rect.height()) * 2.0
 }
 
 /// Arrows and plus and minus, while the viewport has the focus.
