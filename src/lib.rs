@@ -16,3 +16,7 @@ pub mod sys;
 pub mod task;
 #[cfg(feature = "viewer")]
 pub mod viewer;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -9,6 +9,7 @@ use super::command::Command;
 use super::dialogs::{FileDialog, SystemDialog};
 use super::gpu;
 use super::options::ViewerOptions;
+use super::pace::Pace;
 use super::panels::{self, Commands};
 use super::screenshot::Screenshot;
 use super::settings::{Settings, ThemeChoice};
@@ -27,6 +28,7 @@ pub struct App {
     state: State,
     commands: Commands,
     screenshot: Option<Screenshot>,
+    pace: Pace,
     /// Grows when the layout is reset: panels forget their sizes with their names.
     layout: u64,
 }
@@ -64,7 +66,7 @@ impl App {
         let mut state = State::new(settings, shared, dialog, box_limit)?;
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, options.measure));
-        let app = Self { state, commands: Vec::new(), screenshot, layout: 0 };
+        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout: 0 };
         app.follow_settings(&cc.egui_ctx);
         Ok(app)
     }
@@ -184,7 +186,7 @@ impl eframe::App for App {
         self.carry_out(ctx);
         self.state.advance();
         if let Some(screenshot) = &mut self.screenshot {
-            screenshot.advance(ctx, &self.state, &mut self.commands);
+            screenshot.advance(ctx, &self.state, &self.pace, &mut self.commands);
         }
         // Progress bars move; everything else wakes the window itself.
         if self.state.loading.is_some() || self.state.building.is_some() || self.state.measuring.is_some() {
@@ -194,6 +196,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ui_secs = frame.info().cpu_usage.map(f64::from);
+        self.pace.frame(ui_secs, &self.state);
         Panel::top(self.panel("menu"))
             .exact_size(theme::TOP_BAR)
             .show(ui, |ui| panels::menu::show(ui, &self.state, &mut self.commands));

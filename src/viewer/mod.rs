@@ -12,6 +12,7 @@ mod model;
 pub mod navigation;
 mod options;
 mod overlay;
+mod pace;
 pub mod panels;
 mod pick;
 mod screenshot;

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{ColorImage, Context, ScreenshotCallback, ViewportCommand};
 
 use super::command::Command;
+use super::pace::Pace;
 use super::panels::Commands;
 use super::state::State;
 
@@ -48,7 +49,7 @@ impl Screenshot {
     }
 
     /// Looks whether it is time, once a frame.
-    pub fn advance(&mut self, ctx: &Context, state: &State, commands: &mut Commands) {
+    pub fn advance(&mut self, ctx: &Context, state: &State, pace: &Pace, commands: &mut Commands) {
         ctx.request_repaint_after(Duration::from_millis(20));
         let settled = (!state.is_busy() && (state.shown.is_some() || state.error.is_some())) || self.start.elapsed() > PATIENCE;
         match self.stage {
@@ -72,6 +73,7 @@ impl Screenshot {
                     if let Err(why) = save(&self.path, &image) {
                         eprintln!("boxwood: Can't write {}: {why}", self.path.display());
                     }
+                    eprintln!("{}", pace.report(state));
                     self.stage = Stage::Done;
                     ctx.send_viewport_cmd(ViewportCommand::Close);
                 }
