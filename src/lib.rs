@@ -7,6 +7,8 @@
 //! ```
 
 pub mod accel;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod geometry;
 pub mod job;
 pub mod lab;

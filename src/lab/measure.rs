@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use super::counting;
 use super::estimate::{rays_within, secs_per_ray};
+use super::format::{count, duration};
 use super::rays::RaySet;
 use super::sample::pick;
 use super::timing::Timing;
@@ -132,10 +133,17 @@ impl<'a> Lane<'a> {
         cancel: &Cancel,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
-        let secs_per_ray = secs_per_ray(contestant, set, pool, cancel)?;
-        let most = rays_within(options.cap_secs, options.min_rounds + 1, secs_per_ray);
-        let rays = if most < set.rays.len() { Cow::Owned(pick(&set.rays, most)) } else { Cow::Borrowed(&set.rays[..]) };
-        let hits = trace_all(contestant, &rays, set.mode, pool, cancel)?;
+        let within = |secs_per_ray| rays_within(options.cap_secs, options.min_rounds + 1, secs_per_ray);
+        let mut secs_per_ray = secs_per_ray(contestant, set, pool, cancel)?;
+        let mut rays = part(set, within(secs_per_ray));
+        let start = Instant::now();
+        let mut hits = trace_all(contestant, &rays, set.mode, pool, cancel)?;
+        let found = start.elapsed().as_secs_f64() / rays.len().max(1) as f64;
+        // The few rays of the estimate may have been the easy ones.
+        if within(found) < rays.len() / 3 * 2 {
+            (secs_per_ray, rays) = (found, part(set, within(found)));
+            hits = trace_all(contestant, &rays, set.mode, pool, cancel)?;
+        }
         progress.advance(1);
         Ok(Self { contestant, rays, of: set.rays.len(), secs_per_ray, hits, secs: Vec::new() })
     }
@@ -176,9 +184,16 @@ impl<'a> Lane<'a> {
             return Some("there are no such rays: nothing is hit in this view".to_owned());
         }
         let whole = self.secs_per_ray * self.of as f64;
-        let part = self.rays.len();
-        (part < self.of).then(|| format!("{part} of {} rays, spread evenly: all would take {whole:.1} s a round", self.of))
+        let (part, of) = (self.rays.len(), self.of);
+        let why =
+            || format!("{} of {} rays, spread evenly: all would take {}", count(part as u64), count(of as u64), duration(whole));
+        (part < of).then(|| why() + " a round")
     }
+}
+
+/// So many rays of the set, spread evenly, or all of them.
+fn part(set: &RaySet, most: usize) -> Cow<'_, [Ray]> {
+    if most < set.rays.len() { Cow::Owned(pick(&set.rays, most)) } else { Cow::Borrowed(&set.rays) }
 }
 
 /// Traces the rays in chunks on the pool; returns how many hit something. Hits go to a buffer of

@@ -5,6 +5,7 @@ mod building;
 mod counting;
 mod estimate;
 mod facts;
+pub mod format;
 mod measure;
 mod rays;
 mod report;

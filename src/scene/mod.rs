@@ -44,4 +44,19 @@ impl Scene {
     pub fn triangle_count(&self) -> u64 {
         self.instances.iter().map(|i| self.meshes[i.mesh].triangles.len() as u64).sum()
     }
+
+    /// The view to begin with: the scene's own, or all of `bounds` from a little above. `aspect` is
+    /// the picture's width over its height.
+    pub fn first_camera(&self, bounds: &crate::geometry::Aabb, aspect: f32) -> Camera {
+        match self.camera {
+            // A parallel view is as wide as it was made; a narrower picture must still show it all.
+            Some(camera) if matches!(camera.projection, Projection::Orthographic { .. }) => camera.reframed(bounds, aspect),
+            Some(camera) => camera,
+            None => {
+                let up = self.up.normalize_or(Vec3::Y);
+                let ahead = if up.z.abs() > 0.9 { Vec3::new(0.6, -1.0, 0.0) } else { Vec3::new(0.6, 0.0, 1.0) };
+                Camera::framing(bounds, ahead + up * 0.55, up, aspect)
+            }
+        }
+    }
 }

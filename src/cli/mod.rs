@@ -1,0 +1,95 @@
+//! The command line: one file for each command, and beside them what several share.
+//!
+//! Standard output carries results only: a table, or with `--json` one object. Progress, warnings
+//! and errors go to standard error. The exit code is 0, or as [`Failure`] says.
+
+mod args;
+mod bar;
+mod camera;
+mod compare;
+mod context;
+mod failure;
+mod hits;
+mod npy;
+mod output;
+mod rays;
+mod render;
+mod scenes;
+mod stats;
+mod structures;
+mod table;
+mod trace;
+mod view;
+
+pub use failure::Failure;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::task::Cancel;
+
+/// See, race and measure the structures that make ray tracing fast.
+///
+/// Without a command, opens MODEL in a window.
+#[derive(Debug, Parser)]
+#[command(name = "boxwood", version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    view: view::Args,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// List the built-in scenes.
+    Scenes(scenes::Args),
+    /// Build structures and show their figures.
+    Stats(stats::Args),
+    /// Build structures and time them on the same rays, in turns.
+    Compare(compare::Args),
+    /// Render a picture to a PNG file.
+    Render(render::Args),
+    /// Write the rays of a view to a NumPy file.
+    Rays(rays::Args),
+    /// Trace the rays of a NumPy file and write what they hit.
+    Trace(trace::Args),
+}
+
+/// Reads the arguments, does what they say, and reports what went wrong.
+pub fn run() -> ExitCode {
+    let outcome = match Cli::try_parse() {
+        Ok(cli) => dispatch(cli),
+        // Help and version are errors to clap, but not to the user.
+        Err(error) if !error.use_stderr() => output::print(&error.render().to_string()),
+        Err(error) => Err(Failure::of_arguments(&error)),
+    };
+    outcome.map_or_else(|failure| failure.report(), |()| ExitCode::SUCCESS)
+}
+
+fn dispatch(cli: Cli) -> Result<(), Failure> {
+    let Some(command) = cli.command else { return view::run(cli.view) };
+    let cancel = Cancel::new();
+    let raised = cancel.clone();
+    ctrlc::set_handler(move || raised.cancel()).map_err(|e| Failure::Other(anyhow::anyhow!("can't listen for Ctrl-C: {e}")))?;
+    match command {
+        Command::Scenes(args) => scenes::run(&args),
+        Command::Stats(args) => stats::run(&args, cancel),
+        Command::Compare(args) => compare::run(&args, cancel),
+        Command::Render(args) => render::run(&args, cancel),
+        Command::Rays(args) => rays::run(&args, cancel),
+        Command::Trace(args) => trace::run(&args, cancel),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,73 @@
+//! `boxwood rays`: the rays of a view in a file, and how other commands come by them.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::args::{LookArgs, ModelArgs, Size};
+use super::camera::camera;
+use super::context::{Context, Model};
+use super::failure::Failure;
+use super::output::{OutFile, print};
+use super::table::facts;
+use super::{bar, npy};
+use crate::accel::{Accel, registry};
+use crate::geometry::tri::TestKind;
+use crate::lab::format::count;
+use crate::lab::{RayKind, RaySet};
+use crate::render::{Job, Mode};
+use crate::scene::Camera;
+use crate::task::{Cancel, Charge, Progress};
+
+/// The structure that finds the primary hits. Any would do; this one is quick to build and to trace.
+pub const FINDER: &str = "bvh";
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// primary (through pixel centres), shadow (from the primary hits to a light) or diffuse (from the
+    /// primary hits in random directions).
+    #[arg(long)]
+    kind: RayKind,
+    /// The file to write: float32 (N, 8), origin, direction, tmin, tmax.
+    #[arg(short, long, value_name = "RAYS.npy")]
+    output: PathBuf,
+    /// The picture whose rays are written.
+    #[arg(long, value_name = "WxH", default_value = "1280x800")]
+    size: Size,
+    #[command(flatten)]
+    look: LookArgs,
+}
+
+pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
+    let out = OutFile::at(&args.output)?;
+    let cx = Context::new(args.model.machine, cancel);
+    let model = cx.load(&args.model.model)?;
+    let camera = camera(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
+    let (set, _memory) = generate(args.kind, &model, camera, finder(&model, &cx)?, args.size, &cx)?;
+    out.write(&cx.cancel, |file| npy::write_rays(&set.rays, file))?;
+    print(&facts(&[("rays", format!("{}, {} {}", args.output.display(), count(set.rays.len() as u64), set.kind.id()))]))
+}
+
+/// Builds the structure that finds the primary hits.
+pub fn finder(model: &Model, cx: &Context) -> Result<Arc<dyn Accel>, Failure> {
+    let entry = registry::find(FINDER).unwrap_or(&registry::ALL[0]);
+    Ok(cx.build(entry, model, TestKind::Watertight, &entry.defaults())?.accel)
+}
+
+/// Makes rays, within the memory budget: what is charged is held as long as they are.
+pub fn generate(
+    kind: RayKind,
+    model: &Model,
+    camera: Camera,
+    accel: Arc<dyn Accel>,
+    size: Size,
+    cx: &Context,
+) -> Result<(RaySet, Charge), Failure> {
+    // Rays are made in parts and then put together.
+    let memory = cx.budget.charge(size.pixels() * 2 * size_of::<crate::geometry::Ray>() as u64)?;
+    let job = Job { scene: Arc::clone(&model.scene), accel, camera, mode: Mode::Shaded };
+    let made = || RaySet::generate(kind, &job, size.width, size.height, &cx.pool, &cx.cancel);
+    let set = bar::watch(&format!("{} rays", kind.id()), &Progress::new(), made)?;
+    Ok((set, memory))
+}

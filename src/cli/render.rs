@@ -1,0 +1,89 @@
+//! `boxwood render`: a picture in a file.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use image::ImageEncoder;
+
+use super::args::{LookArgs, ModelArgs, Size};
+use super::bar;
+use super::camera::camera;
+use super::context::Context;
+use super::failure::Failure;
+use super::output::{OutFile, print};
+use super::structures::{BuildArgs, One};
+use super::table::facts;
+use crate::lab::format::{duration, number, rate};
+use crate::render::{self, Job, Mode, Still, auto_range};
+use crate::task::{Cancel, Progress};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// The picture to write.
+    #[arg(short, long, value_name = "FILE.png")]
+    output: PathBuf,
+    /// The structure to trace through.
+    #[arg(long, value_name = "ID", default_value = "bvh")]
+    structure: One,
+    /// What is shown: shaded, normals, depth, ao, nodes or prims.
+    #[arg(long, default_value = "shaded")]
+    mode: Mode,
+    /// Samples a pixel.
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
+    spp: u32,
+    /// Columns and rows.
+    #[arg(long, value_name = "WxH", default_value = "1280x800")]
+    size: Size,
+    #[command(flatten)]
+    look: LookArgs,
+    #[command(flatten)]
+    build: BuildArgs,
+}
+
+/// A film holds a sum and a depth for each pixel, and the picture's bytes are made of it.
+const BYTES_PER_PIXEL: u64 = 32;
+
+pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
+    if !args.output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+        return Err(Failure::Input(format!("Can't write {}: pictures are .png files", args.output.display())));
+    }
+    let out = OutFile::at(&args.output)?;
+    let One(entry) = args.structure;
+    let params = args.build.params(&[entry])?.remove(0);
+    let cx = Context::new(args.model.machine, cancel);
+    let _memory = cx.budget.charge(args.size.pixels() * BYTES_PER_PIXEL)?;
+    let model = cx.load(&args.model.model)?;
+    let built = cx.build(entry, &model, args.build.test, &params)?;
+
+    let camera = camera(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
+    let job = Job { scene: model.scene, accel: built.accel, camera, mode: args.mode };
+    let (width, height) = (args.size.width, args.size.height);
+    let progress = Progress::new();
+    let still =
+        bar::watch("render", &progress, || render::render(&job, width, height, args.spp, &cx.pool, &cx.cancel, &progress))?;
+    let pixels = still.develop(&job, None, None);
+    out.write(&cx.cancel, |file| {
+        let png = image::codecs::png::PngEncoder::new(&mut *file);
+        png.write_image(&pixels, width, height, image::ExtendedColorType::Rgba8).map_err(std::io::Error::other)?;
+        file.flush()
+    })?;
+    print(&text(args, &still, built.build_secs))
+}
+
+fn text(args: &Args, still: &Still, build_secs: f64) -> String {
+    let picture = format!("{}, {}, {} spp, {}", args.output.display(), args.size, args.spp, args.mode.id());
+    let speed = format!("{}, {}", duration(still.secs), rate(still.rays as f64 / still.secs));
+    let mut lines = vec![("picture", picture), ("build", duration(build_secs)), ("trace", speed)];
+    if args.mode.is_scalar() {
+        let range = auto_range(&still.film, args.mode);
+        let unit = match args.mode {
+            Mode::Nodes => " nodes visited by a ray",
+            Mode::Prims => " triangles tested by a ray",
+            _ => "",
+        };
+        lines.push(("range", format!("{} to {}{unit}", number(range.min.into()), number(range.max.into()))));
+    }
+    facts(&lines)
+}

@@ -1,0 +1,152 @@
+//! `boxwood stats`: what structures look like in figures.
+
+use super::args::ModelArgs;
+use super::context::{Context, Model};
+use super::failure::Failure;
+use super::output::{print, print_json};
+use super::structures::{BuildArgs, Many, sah_weights};
+use super::table::{Table, facts};
+use crate::accel::BuildError;
+use crate::accel::params::ParamValues;
+use crate::accel::registry::Entry;
+use crate::accel::stats::Stats;
+use crate::geometry::num::floor_index;
+use crate::lab::format::{MISSING, bytes, count, duration, number};
+use crate::lab::{BuiltFacts, BuiltRow, Report, StructureRow};
+use crate::task::Cancel;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// The structures: ids between commas, or all.
+    #[arg(long, value_name = "ID|all")]
+    structure: Many,
+    #[command(flatten)]
+    build: BuildArgs,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
+    let Many(entries) = &args.structure;
+    let params = args.build.params(entries)?;
+    let cx = Context::new(args.model.machine, cancel);
+    let model = cx.load(&args.model.model)?;
+    let mut structures = Vec::new();
+    for (entry, params) in entries.iter().zip(&params) {
+        structures.push(row(entry, &args.build, params, &model, &cx)?.0);
+    }
+    let report = Report { scene: model.facts(), machine: cx.machine(), structures };
+    if args.json {
+        print_json(&report)?
+    } else {
+        print(&text(&report))?
+    }
+    all_failed(&report)
+}
+
+/// Builds a structure and looks at it. One that cannot be built is a row with the reason.
+pub fn row(
+    entry: &Entry,
+    build: &BuildArgs,
+    params: &ParamValues,
+    model: &Model,
+    cx: &Context,
+) -> Result<(StructureRow, Option<BuiltRow>), Failure> {
+    let mut row = StructureRow::new(entry.id, params, build.test);
+    match cx.build(entry, model, build.test, params) {
+        Ok(built) => {
+            let stats = Stats::of(built.accel.as_ref(), sah_weights(entry, params), &cx.cancel)?;
+            row.built = Some(BuiltFacts::of(&built, stats));
+            Ok((row, Some(built)))
+        }
+        Err(BuildError::Cancelled(_)) => Err(Failure::Cancelled),
+        Err(error) => {
+            row.error = Some(error.to_string());
+            Ok((row, None))
+        }
+    }
+}
+
+/// A failure where there is nothing but reasons.
+pub fn all_failed(report: &Report) -> Result<(), Failure> {
+    match &report.structures[..] {
+        rows if rows.iter().any(|row| row.error.is_none()) => Ok(()),
+        [row] => Err(Failure::Other(anyhow::anyhow!("{}", row.error.as_deref().unwrap_or_default()))),
+        _ => Err(Failure::Other(anyhow::anyhow!("none of the structures could be built"))),
+    }
+}
+
+fn text(report: &Report) -> String {
+    let details = match &report.structures[..] {
+        [StructureRow { built: Some(built), .. }] => histograms(built),
+        _ => String::new(),
+    };
+    format!("{}\n{}{details}", facts(&head(report)), structures(report))
+}
+
+/// The model and the machine.
+pub fn head(report: &Report) -> Vec<(&'static str, String)> {
+    let (scene, machine) = (&report.scene, &report.machine);
+    let size = scene.extent.map(number).join(" x ");
+    let left_out = [(scene.dropped, "dropped"), (scene.degenerate, "degenerate")];
+    let left_out: String =
+        left_out.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!(", {} {what}", count((*n).into()))).collect();
+    vec![
+        ("model", format!("{}: {} triangles{left_out}, extent {size}", scene.path, count(scene.triangles))),
+        ("machine", format!("{}, {} cores, {} threads", machine.cpu, machine.cores, machine.threads)),
+    ]
+}
+
+/// One line for each structure, and why some are not there.
+pub fn structures(report: &Report) -> String {
+    let headers = ["structure", "test", "build ms", "MiB", "nodes", "leaves", "depth", "references", "SAH cost"];
+    let mut table = Table::new(&headers);
+    let mut reasons = String::new();
+    for row in &report.structures {
+        let mut cells = vec![row.id.clone(), row.test.id().to_owned()];
+        match &row.built {
+            Some(b) => cells.extend([
+                number(b.build_secs * 1e3),
+                number(b.bytes as f64 / f64::from(1 << 20)),
+                count(b.nodes),
+                count(b.leaves),
+                count(b.max_depth.into()),
+                count(b.references),
+                number(b.sah),
+            ]),
+            None => cells.resize(headers.len(), MISSING.to_owned()),
+        }
+        table.row(cells);
+        if let Some(error) = &row.error {
+            reasons.push_str(&format!("{} is not there: {error}\n", row.id));
+        }
+    }
+    table.render() + &reasons
+}
+
+/// What only fits if there is one structure.
+fn histograms(built: &BuiltFacts) -> String {
+    let last = built.leaf_sizes.len().saturating_sub(1);
+    let size = |k: usize| if k == last { format!("{k} or more") } else { k.to_string() };
+    let sizes = histogram("references", &built.leaf_sizes, size);
+    let depths = histogram("depth", &built.leaf_depths, |k| k.to_string());
+    let phases = built.phases.iter().map(|phase| format!("{} {}", phase.name, duration(phase.secs))).collect::<Vec<_>>();
+    let memory = built.memory.iter().map(|part| format!("{} {}", part.name, bytes(part.bytes))).collect::<Vec<_>>();
+    let or_missing = |list: Vec<String>| if list.is_empty() { MISSING.to_owned() } else { list.join(", ") };
+    format!("\n{sizes}\n{depths}\n{}", facts(&[("build", or_missing(phases)), ("memory", or_missing(memory))]))
+}
+
+/// A line for each count that is not 0.
+fn histogram(what: &str, counts: &[u64], name: impl Fn(usize) -> String) -> String {
+    const WIDTH: usize = 30;
+    let most = counts.iter().copied().max().unwrap_or(0).max(1) as f64;
+    let mut table = Table::new(&[what, "leaves"]);
+    for (k, n) in counts.iter().enumerate().filter(|(_, n)| **n > 0) {
+        let length = floor_index(*n as f64 / most * WIDTH as f64 + 0.5, WIDTH);
+        table.row(vec![name(k), count(*n), format!("{:<WIDTH$}", "█".repeat(length))]);
+    }
+    table.render()
+}

@@ -1,0 +1,126 @@
+//! Which structures, built how.
+
+use std::str::FromStr;
+
+use super::failure::Failure;
+use crate::accel::params::ParamValues;
+use crate::accel::registry::{self, Entry};
+use crate::accel::stats::SahWeights;
+use crate::geometry::tri::TestKind;
+
+/// How structures are built.
+#[derive(Debug, clap::Args)]
+pub struct BuildArgs {
+    /// The triangle test: watertight, or fast (rays through shared edges may slip through).
+    #[arg(long, value_name = "TEST", default_value = "watertight")]
+    pub test: TestKind,
+    /// Sets a parameter, as in --set bins=16. May be given many times.
+    #[arg(long, value_name = "K=V")]
+    pub set: Vec<Setting>,
+}
+
+/// One structure, by its id.
+#[derive(Clone, Copy, Debug)]
+pub struct One(pub &'static Entry);
+
+impl FromStr for One {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let known = || registry::ALL.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", ");
+        registry::find(s).map(Self).ok_or_else(|| format!("there is no structure '{s}'; there are {}", known()))
+    }
+}
+
+/// `all`, or ids between commas.
+#[derive(Clone, Debug)]
+pub struct Many(pub Vec<&'static Entry>);
+
+impl FromStr for Many {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        if s == "all" {
+            return Ok(Self(registry::ALL.iter().collect()));
+        }
+        let mut chosen: Vec<&'static Entry> = Vec::new();
+        for id in s.split(',') {
+            let One(entry) = id.trim().parse()?;
+            if chosen.iter().all(|other| other.id != entry.id) {
+                chosen.push(entry);
+            }
+        }
+        Ok(Self(chosen))
+    }
+}
+
+/// `k=v`.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    id: String,
+    value: String,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let (id, value) = s.split_once('=').ok_or("a setting is K=V")?;
+        Ok(Self { id: id.trim().to_owned(), value: value.trim().to_owned() })
+    }
+}
+
+impl BuildArgs {
+    /// The parameters of each structure. A setting goes to every structure that has the parameter;
+    /// one that fits none is an error.
+    pub fn params(&self, entries: &[&'static Entry]) -> Result<Vec<ParamValues>, Failure> {
+        let mut all: Vec<ParamValues> = entries.iter().map(|entry| entry.defaults()).collect();
+        for Setting { id, value } in &self.set {
+            let has = |entry: &Entry| entry.params.iter().any(|param| param.id == id);
+            let takers = entries.iter().zip(&mut all).filter(|(entry, _)| has(entry) || entries.len() == 1);
+            let mut taken = false;
+            for (entry, params) in takers {
+                params.set(id, value).map_err(|error| Failure::Input(format!("{}: {error}", entry.id)))?;
+                taken = true;
+            }
+            if !taken {
+                return Err(Failure::Input(format!("none of these structures has a parameter '{id}'")));
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// The weights that a structure was built with, so that its SAH cost is stated in them.
+pub fn sah_weights(entry: &Entry, params: &ParamValues) -> SahWeights {
+    let defaults = SahWeights::default();
+    let weight = |id, default| if entry.params.iter().any(|param| param.id == id) { params.float(id) } else { default };
+    SahWeights { c_trav: weight("c_trav", defaults.c_trav), c_isect: weight("c_isect", defaults.c_isect) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn args(set: &[&str]) -> BuildArgs {
+        BuildArgs { test: TestKind::Watertight, set: set.iter().map(|s| s.parse().expect("k=v")).collect() }
+    }
+
+    #[test]
+    fn structures_are_named_once_each() {
+        let ids = |s: &str| s.parse::<Many>().map(|Many(all)| all.iter().map(|e| e.id).collect::<Vec<_>>());
+        assert_eq!(ids("bvh, grid,bvh"), Ok(vec!["bvh", "grid"]));
+        assert_eq!(ids("all").map(|all| all.len()), Ok(registry::ALL.len()));
+        assert!(ids("bvh,oak").expect_err("unknown").contains("brute, bound, bvh"));
+    }
+
+    #[test]
+    fn settings_reach_every_structure_that_has_them() {
+        let Many(all) = "brute,bvh,kdtree".parse().expect("known");
+        let params = args(&["c_trav=2.5"]).params(&all).expect("some have it");
+        assert_eq!((params[1].float("c_trav"), params[2].float("c_trav")), (2.5, 2.5));
+        assert!(args(&["leaves=3"]).params(&all).is_err());
+        assert!(args(&["bins=zero"]).params(&all).is_err());
+        assert!(matches!(args(&["bins=8"]).params(&all[..1]), Err(Failure::Input(why)) if why.contains("there is none")));
+    }
+}
