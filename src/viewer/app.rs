@@ -62,8 +62,9 @@ impl App {
 
         let ctx = cc.egui_ctx.clone();
         let budget = options.memory_bytes.map_or_else(Budget::half_of_machine, Budget::new);
-        let shared = Shared { pool: Pool::new("work", 0), budget, wake: Arc::new(move || ctx.request_repaint()) };
+        let shared = Shared { pool: Pool::new("work", options.threads), budget, wake: Arc::new(move || ctx.request_repaint()) };
         let mut state = State::new(settings, shared, dialog, box_limit)?;
+        state.first_camera = options.camera;
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, options.measure));
         let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout: 0 };

@@ -5,9 +5,8 @@ use std::time::Instant;
 
 use super::gpu::RasterMesh;
 use crate::geometry::Aabb;
-use crate::scene::{self, Camera, Geometry, LoadCx, LoadError, Projection, Scene};
+use crate::scene::{self, Geometry, LoadCx, LoadError, Scene};
 use crate::task::{Budget, Cancel, Pool, Progress};
-use glam::Vec3;
 
 /// A model that is open.
 #[derive(Clone, Debug)]
@@ -44,25 +43,6 @@ pub fn load(
 }
 
 impl Model {
-    /// The view to begin with: the scene's own, or the whole model from a little above.
-    pub fn first_camera(&self, aspect: f32) -> Camera {
-        self.scene.camera.map_or_else(
-            || self.framed(aspect),
-            |c| match c.projection {
-                // A parallel view is as wide as it was made; a narrower window must still show it all.
-                Projection::Orthographic { .. } => c.reframed(&self.bounds(), aspect),
-                Projection::Perspective { .. } => c,
-            },
-        )
-    }
-
-    /// The whole model from a little above.
-    pub fn framed(&self, aspect: f32) -> Camera {
-        let up = self.scene.up.normalize_or(Vec3::Y);
-        let ahead = if up.abs().z > 0.9 { Vec3::new(0.6, -1.0, 0.0) } else { Vec3::new(0.6, 0.0, 1.0) };
-        Camera::framing(&self.bounds(), ahead + up * 0.55, up, aspect)
-    }
-
     /// The bounds of what is traced, in the world.
     pub fn bounds(&self) -> Aabb {
         *self.geometry.world_bounds()

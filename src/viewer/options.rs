@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::settings::{Settings, ThemeChoice};
 use crate::render::Mode;
+use crate::scene::CameraSpec;
 
 /// How the window begins. What is not set comes from the settings of the last time.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +15,8 @@ pub struct ViewerOptions {
     pub structure: Option<String>,
     /// What is shown.
     pub mode: Option<Mode>,
+    /// From where it is seen at first.
+    pub camera: Option<CameraSpec>,
     /// The depth of the boxes.
     pub depth: Option<u32>,
     /// Only the boxes of leaves.
@@ -30,6 +33,8 @@ pub struct ViewerOptions {
     pub measure: bool,
     /// Save a picture of the window here once everything is there, and close.
     pub screenshot: Option<PathBuf>,
+    /// Threads that load, build and measure; 0 for one a core.
+    pub threads: usize,
     /// The memory budget.
     pub memory_bytes: Option<u64>,
 }

@@ -19,7 +19,7 @@ use super::workers::{self, Building, Collecting, Counting, Loading, Measuring, P
 use crate::accel::{BuildError, cell};
 use crate::job::Outcome;
 use crate::render::{self, Mode, Picture, Range, Renderer, Request};
-use crate::scene::Camera;
+use crate::scene::{Camera, CameraSpec};
 use crate::task::Pool;
 use glam::Vec2;
 
@@ -36,6 +36,8 @@ pub struct State {
     pub shown: Option<Built>,
     /// The view.
     pub camera: Camera,
+    /// Where the first model is to be seen from, instead of where it suits.
+    pub first_camera: Option<CameraSpec>,
     /// For amounts: fixed by the user, or from the picture.
     pub range: Option<Range>,
     /// The newest picture of the open model.
@@ -109,6 +111,7 @@ impl State {
             model: None,
             shown: None,
             camera: Camera::framing(&crate::geometry::Aabb::EMPTY, glam::Vec3::Z, glam::Vec3::Y, 1.0),
+            first_camera: None,
             range: None,
             picture: None,
             overlay: None,
@@ -373,7 +376,7 @@ impl State {
 
     fn opened(&mut self, name: &str, model: Model) {
         self.settings.opened(name);
-        self.camera = model.first_camera(self.aspect());
+        self.camera = CameraSpec::or_first(self.first_camera.take().as_ref(), &model.scene, &model.geometry, self.aspect());
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
         (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
         (self.picking, self.picked) = (None, None);
