@@ -10,6 +10,7 @@ pub mod accel;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod geometry;
+pub mod job;
 pub mod lab;
 pub mod render;
 pub mod scene;
@@ -17,3 +18,7 @@ pub mod sys;
 pub mod task;
 #[cfg(feature = "viewer")]
 pub mod viewer;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

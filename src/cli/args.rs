@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::camera::CameraSpec;
+use crate::scene::CameraSpec;
 
 /// What is opened, and with how much of the machine.
 #[derive(Debug, clap::Args)]

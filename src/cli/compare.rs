@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::args::{LookArgs, ModelArgs, Size, seconds};
-use super::camera::camera;
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
@@ -15,6 +14,7 @@ use super::{bar, rays, stats};
 use crate::accel::Accel;
 use crate::lab::format::{MISSING, count, number, ratio};
 use crate::lab::{Contestant, Fairness, MeasureOptions, RayKind, Report, Timing, is_tie, measure};
+use crate::scene::CameraSpec;
 use crate::task::{Cancel, Progress};
 
 #[derive(Debug, clap::Args)]
@@ -99,7 +99,7 @@ impl Args {
 
 /// Measures every kind of ray and puts the outcome into the rows.
 fn time(args: &Args, model: &Model, contestants: &[Contestant], report: &mut Report, cx: &Context) -> Result<(), Failure> {
-    let camera = camera(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
+    let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
     let finder = finder(args, model, contestants, cx)?;
     for kind in &args.kinds() {
         let (set, _memory) = rays::generate(*kind, model, camera, Arc::clone(&finder), args.size, cx)?;

@@ -5,7 +5,6 @@
 
 mod args;
 mod bar;
-mod camera;
 mod compare;
 mod context;
 mod failure;

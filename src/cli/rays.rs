@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::args::{LookArgs, ModelArgs, Size};
-use super::camera::camera;
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{OutFile, print};
@@ -15,7 +14,7 @@ use crate::geometry::tri::TestKind;
 use crate::lab::format::count;
 use crate::lab::{RayKind, RaySet};
 use crate::render::{Job, Mode};
-use crate::scene::Camera;
+use crate::scene::{Camera, CameraSpec};
 use crate::task::{Cancel, Charge, Progress};
 
 /// The structure that finds the primary hits. Any would do; this one is quick to build and to trace.
@@ -43,7 +42,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let out = OutFile::at(&args.output)?;
     let cx = Context::new(args.model.machine, cancel);
     let model = cx.load(&args.model.model)?;
-    let camera = camera(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
+    let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
     let (set, _memory) = generate(args.kind, &model, camera, finder(&model, &cx)?, args.size, &cx)?;
     out.write(&cx.cancel, |file| npy::write_rays(&set.rays, file))?;
     print(&facts(&[("rays", format!("{}, {} {}", args.output.display(), count(set.rays.len() as u64), set.kind.id()))]))

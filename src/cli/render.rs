@@ -7,7 +7,6 @@ use image::ImageEncoder;
 
 use super::args::{LookArgs, ModelArgs, Size};
 use super::bar;
-use super::camera::camera;
 use super::context::Context;
 use super::failure::Failure;
 use super::output::{OutFile, print};
@@ -15,6 +14,7 @@ use super::structures::{BuildArgs, One};
 use super::table::facts;
 use crate::lab::format::{duration, number, rate};
 use crate::render::{self, Job, Mode, Still, auto_range};
+use crate::scene::CameraSpec;
 use crate::task::{Cancel, Progress};
 
 #[derive(Debug, clap::Args)]
@@ -57,7 +57,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let model = cx.load(&args.model.model)?;
     let built = cx.build(entry, &model, args.build.test, &params)?;
 
-    let camera = camera(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
+    let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
     let job = Job { scene: model.scene, accel: built.accel, camera, mode: args.mode };
     let (width, height) = (args.size.width, args.size.height);
     let progress = Progress::new();

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::args::{MachineArgs, Size};
+use super::args::{LookArgs, MachineArgs, Size};
 use super::failure::Failure;
 use super::structures::One;
 use crate::render::Mode;
@@ -48,17 +48,42 @@ pub struct Args {
     #[arg(long, requires = "screenshot")]
     pub measure: bool,
     #[command(flatten)]
+    pub look: LookArgs,
+    #[command(flatten)]
     pub machine: MachineArgs,
 }
 
+/// Opens the window and returns when it is closed.
+#[cfg(feature = "viewer")]
 pub fn run(args: Args) -> Result<(), Failure> {
-    open_viewer(args)
+    use crate::viewer::{ViewerError, ViewerOptions, run, settings::ThemeChoice};
+    let theme = if args.light { Some(ThemeChoice::Light) } else { args.dark.then_some(ThemeChoice::Dark) };
+    let options = ViewerOptions {
+        model: args.model,
+        structure: args.structure.map(|one| one.0.id.to_owned()),
+        mode: args.mode,
+        camera: args.look.camera,
+        depth: args.depth,
+        leaves_only: args.leaves_only,
+        no_overlay: args.no_overlay,
+        samples: args.spp,
+        theme,
+        size: args.size.map(|size| [size.width as f32, size.height as f32]),
+        measure: args.measure,
+        screenshot: args.screenshot,
+        threads: args.machine.threads,
+        memory_bytes: args.machine.memory.map(|mib| mib << 20),
+    };
+    run(options).map_err(|error| match error {
+        ViewerError::NoStructure(..) => Failure::Input(error.to_string()),
+        ViewerError::NoWindow(_) => Failure::Other(error.into()),
+    })
 }
 
-/// ==== WIRING POINT: hand `args` to `viewer::run` here, under `cfg(feature = "viewer")`. ====
-fn open_viewer(args: Args) -> Result<(), Failure> {
-    let _ = args;
+/// Says that there is no window in this build.
+#[cfg(not(feature = "viewer"))]
+pub fn run(_: Args) -> Result<(), Failure> {
     Err(Failure::Other(anyhow::anyhow!(
-        "this build has no viewer; the commands scenes, stats, compare, render, rays and trace work. See 'boxwood --help'"
+        "this build has no window; the commands scenes, stats, compare, render, rays and trace work. See 'boxwood --help'"
     )))
 }

@@ -20,7 +20,8 @@ pub struct Development {
     pub mode: Mode,
     /// For amounts.
     pub range: Range,
-    /// Behind what is hit: gamma-encoded red, green and blue; `None` leaves it transparent.
+    /// Behind what is hit: gamma-encoded red, green and blue; `None` leaves it transparent, and
+    /// colours are multiplied by their opacity.
     pub background: Option<[f32; 3]>,
 }
 
@@ -40,7 +41,7 @@ pub fn auto_range(film: &Film, mode: Mode) -> Range {
 }
 
 impl Development {
-    /// Four bytes a pixel (red, green, blue, opacity; not premultiplied), row 0 at the top.
+    /// Four bytes a pixel (red, green, blue, opacity), row 0 at the top.
     pub fn develop(&self, film: &Film) -> Vec<u8> {
         film.means().flat_map(|mean| self.pixel(mean)).collect()
     }
@@ -53,12 +54,9 @@ impl Development {
         } else {
             [r, g, b].map(|x| encode(x / coverage))
         };
-        let Some(behind) = self.background else {
-            let [r, g, b] = color.map(byte);
-            return [r, g, b, byte(coverage)];
-        };
+        let (behind, opacity) = self.background.map_or(([0.0; 3], coverage), |behind| (behind, 1.0));
         let over = |k: usize| byte(color[k] * coverage + behind[k] * (1.0 - coverage));
-        [over(0), over(1), over(2), 255]
+        [over(0), over(1), over(2), byte(opacity)]
     }
 
     fn amount(&self, amount: f32) -> [f32; 3] {

@@ -1,5 +1,7 @@
 //! Where samples gather: a sum for each pixel, and how many samples it holds.
 
+use std::sync::Arc;
+
 /// Sums of samples. A pixel is red, green, blue and coverage; in scalar modes the first is the
 /// amount. Row 0 is the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,16 +10,19 @@ pub struct Film {
     height: u32,
     sums: Vec<[f32; 4]>,
     /// Linear depth of the first sample, infinite for a miss, in the scaled space.
-    depth: Vec<f32>,
+    depth: Arc<Vec<f32>>,
     samples: u32,
 }
+
+/// The sums of some rows, and their depths while they are still to be written.
+pub(super) type Band<'a> = (&'a mut [[f32; 4]], Option<&'a mut [f32]>);
 
 impl Film {
     /// An empty film of at least one pixel.
     pub fn new(width: u32, height: u32) -> Self {
         let (width, height) = (width.max(1), height.max(1));
         let pixels = width as usize * height as usize;
-        Self { width, height, sums: vec![[0.0; 4]; pixels], depth: vec![f32::INFINITY; pixels], samples: 0 }
+        Self { width, height, sums: vec![[0.0; 4]; pixels], depth: Arc::new(vec![f32::INFINITY; pixels]), samples: 0 }
     }
 
     /// Columns.
@@ -40,10 +45,16 @@ impl Film {
         self.samples += 1;
     }
 
-    /// Sums and depths, to be added to by rows.
-    pub(super) fn rows_mut(&mut self, rows: usize) -> impl Iterator<Item = (&mut [[f32; 4]], &mut [f32])> {
+    /// Bands of rows: sums to add to and, for the first sample, depths to write. Later the depths are
+    /// shared with pictures and stay as they are.
+    pub(super) fn bands_mut(&mut self, rows: usize) -> Vec<Band<'_>> {
         let chunk = rows * self.width as usize;
-        self.sums.chunks_mut(chunk).zip(self.depth.chunks_mut(chunk))
+        let sums = self.sums.chunks_mut(chunk);
+        if self.samples > 0 {
+            return sums.map(|sums| (sums, None)).collect();
+        }
+        let depth = Arc::make_mut(&mut self.depth).chunks_mut(chunk);
+        sums.zip(depth.map(Some)).collect()
     }
 
     /// The mean of each pixel's samples.
@@ -53,7 +64,7 @@ impl Film {
     }
 
     /// Linear depths of the first sample, in the scaled space.
-    pub fn depth(&self) -> &[f32] {
+    pub const fn depth(&self) -> &Arc<Vec<f32>> {
         &self.depth
     }
 }

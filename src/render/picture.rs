@@ -1,7 +1,10 @@
 //! A finished pass as the window gets it.
 
 use super::Range;
+use std::sync::Arc;
+
 use crate::accel::probe::Counts;
+use crate::scene::Camera;
 
 /// Bytes to show, the depth behind them, and how they came to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,14 +13,16 @@ pub struct Picture {
     pub generation: u64,
     /// The request it answers.
     pub request: u64,
+    /// From where it is seen.
+    pub camera: Camera,
     /// Columns; fewer than asked for in a coarse pass.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Gamma-encoded red, green, blue and opacity (not premultiplied); row 0 at the top.
+    /// Gamma-encoded red, green, blue and opacity, multiplied by opacity; row 0 at the top.
     pub rgba: Vec<u8>,
     /// Linear depth in the scaled space, infinite where nothing is hit.
-    pub depth: Vec<f32>,
+    pub depth: Arc<Vec<f32>>,
     /// The range that amounts were mapped with.
     pub range: Range,
     /// How far the picture is.

@@ -273,10 +273,11 @@ impl<N: Fn()> Worker<N> {
         let picture = Picture {
             generation: self.generation,
             request: task.number,
+            camera: task.request.job.camera,
             width: film.width(),
             height: film.height(),
             rgba,
-            depth: film.depth().to_vec(),
+            depth: Arc::clone(film.depth()),
             range,
             progress,
         };

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use std::sync::Arc;
 
+use super::film::Band;
 use super::sampler::{Sampler, in_pixel};
 use super::shade::{occlusion_ray, shade};
 use super::{Film, Mode};
@@ -54,8 +55,8 @@ impl Job {
     /// [`Cancelled`]; the film then holds a part of the pass and is of no use.
     pub fn pass(&self, film: &mut Film, pool: &Pool, cancel: &Cancel) -> Result<u64, Cancelled> {
         let (width, height, sample) = (film.width(), film.height(), film.samples());
-        let bands: Vec<_> = film.rows_mut(ROWS).enumerate().collect();
-        let band = |(i, (sums, depth)): (usize, (&mut [[f32; 4]], &mut [f32]))| {
+        let bands: Vec<_> = film.bands_mut(ROWS).into_iter().enumerate().collect();
+        let band = |(i, (sums, depth)): (usize, Band<'_>)| {
             let first = (i * ROWS) as u32;
             let rows = first..height.min(first + ROWS as u32);
             self.band(sums, depth, width, height, rows, sample, cancel)
@@ -69,7 +70,7 @@ impl Job {
     fn band(
         &self,
         sums: &mut [[f32; 4]],
-        depth: &mut [f32],
+        depth: Option<&mut [f32]>,
         width: u32,
         height: u32,
         rows: std::ops::Range<u32>,
@@ -98,7 +99,7 @@ impl Job {
         for (sum, sample) in sums.iter_mut().zip(&samples) {
             (0..4).for_each(|k| sum[k] += sample[k]);
         }
-        if sample == 0 {
+        if let Some(depth) = depth {
             // t is depth along the view: the camera's rays have unit length along it.
             let scale = self.accel.geometry().space().scale();
             let scaled = |hit: &Option<Hit>| hit.map_or(f32::INFINITY, |h| narrow(f64::from(h.t) * scale));

@@ -4,6 +4,7 @@
 
 pub mod builtin;
 mod camera;
+mod camera_spec;
 mod error;
 mod geometry;
 pub mod load;
@@ -12,6 +13,7 @@ mod mesh;
 mod source;
 
 pub use camera::{Camera, Frame, Projection};
+pub use camera_spec::CameraSpec;
 pub use error::{LoadError, Reason};
 pub use geometry::{Geometry, PrimRef};
 pub use material::Material;

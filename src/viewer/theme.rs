@@ -45,12 +45,24 @@ pub const WINDOW: Vec2 = Vec2::new(1280.0, 800.0);
 pub const LEAST_WINDOW: Vec2 = Vec2::new(960.0, 600.0);
 /// A press that moves less than this is a click, in points.
 pub const CLICK_SLACK: f32 = 4.0;
+/// The width of the strip that the right panel folds to.
+pub const STRIP: f32 = 40.0;
+/// The size of a structure's mark.
+pub const MARK: f32 = 9.0;
+/// How often progress bars move.
+pub const PROGRESS_INTERVAL: std::time::Duration = std::time::Duration::from_millis(50);
 /// How far round corners are rounded.
 const CORNER: u8 = 4;
 
 /// The text style of the large numbers.
 pub fn numeral() -> TextStyle {
     TextStyle::Name("numeral".into())
+}
+
+/// Behind text that stands on a picture.
+pub const fn plate(palette: &Palette) -> Color32 {
+    let [r, g, b, _] = palette.background.to_array();
+    Color32::from_rgba_premultiplied(r / 8 * 7, g / 8 * 7, b / 8 * 7, 224)
 }
 
 /// Gives egui both looks, and lets it follow the system's choice.

@@ -84,7 +84,11 @@ impl Bin {
 }
 
 /// The buckets of all three axes.
-type Bins = [[Bin; MAX_BINS as usize]; 3];
+type Bins<const N: usize> = [[Bin; N]; 3];
+
+/// Most nodes hold few triangles, which fill few buckets: clearing [`MAX_BINS`] for each would cost
+/// more than filling them.
+const FEW_BINS: usize = 8;
 
 /// Triangles from which on a node is binned in parallel, and in what portions.
 const PARALLEL: usize = 1 << 15;
@@ -94,11 +98,27 @@ impl Heuristic for Binned {
     type Split = BinRule;
 
     fn choose(&self, prims: &[PrimBox], bounds: &Aabb, may_be_leaf: bool, cx: &BuildCx) -> Result<Option<BinRule>, BuildError> {
-        let centres = centres(prims, cx)?;
-        // Few triangles fill few buckets.
         let bins = self.bins.min(num::index(prims.len()).saturating_mul(2)).max(2);
+        if bins as usize <= FEW_BINS {
+            self.choose_among::<FEW_BINS>(bins, prims, bounds, may_be_leaf, cx)
+        } else {
+            self.choose_among::<{ MAX_BINS as usize }>(bins, prims, bounds, may_be_leaf, cx)
+        }
+    }
+}
+
+impl Binned {
+    fn choose_among<const N: usize>(
+        &self,
+        bins: u32,
+        prims: &[PrimBox],
+        bounds: &Aabb,
+        may_be_leaf: bool,
+        cx: &BuildCx,
+    ) -> Result<Option<BinRule>, BuildError> {
+        let centres = centres(prims, cx)?;
         let scales = Axis::ALL.map(|axis| Scale::new(axis, &centres, bins));
-        let counted = count(prims, &scales, cx)?;
+        let counted = count::<N>(prims, &scales, cx)?;
         let best =
             scales.iter().zip(&counted).filter_map(|(scale, bins)| cheapest(bins, scale)).min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((children, rule)) = best else { return Ok(None) };
@@ -120,9 +140,9 @@ fn centres(prims: &[PrimBox], cx: &BuildCx) -> Result<Aabb, BuildError> {
 }
 
 /// Sorts the triangles into the buckets of all axes in one pass.
-fn count(prims: &[PrimBox], scales: &[Scale; 3], cx: &BuildCx) -> Result<Bins, BuildError> {
+fn count<const N: usize>(prims: &[PrimBox], scales: &[Scale; 3], cx: &BuildCx) -> Result<Bins<N>, BuildError> {
     let chunk = |prims: &[PrimBox]| {
-        let mut bins: Bins = [[EMPTY; MAX_BINS as usize]; 3];
+        let mut bins: Bins<N> = [[EMPTY; N]; 3];
         for prim in prims {
             for (scale, bins) in scales.iter().zip(&mut bins) {
                 let bin = &mut bins[scale.bin(prim)];
@@ -135,15 +155,15 @@ fn count(prims: &[PrimBox], scales: &[Scale; 3], cx: &BuildCx) -> Result<Bins, B
     if prims.len() < PARALLEL {
         return Ok(chunk(prims));
     }
-    let join = |a: Bins, b: Bins| std::array::from_fn(|k| std::array::from_fn(|i| a[k][i].join(b[k][i])));
+    let join = |a: Bins<N>, b: Bins<N>| std::array::from_fn(|k| std::array::from_fn(|i| a[k][i].join(b[k][i])));
     let checked = |prims: &[PrimBox]| cx.cancel.check().map(|()| chunk(prims));
-    Ok(prims.par_chunks(CHUNK).map(checked).try_reduce(|| [[EMPTY; MAX_BINS as usize]; 3], |a, b| Ok(join(a, b)))?)
+    Ok(prims.par_chunks(CHUNK).map(checked).try_reduce(|| [[EMPTY; N]; 3], |a, b| Ok(join(a, b)))?)
 }
 
 /// The plane with the least `area * count` summed over both sides, and that sum; `None` if all
 /// triangles fall into one bucket. One sweep from the right, one from the left.
-fn cheapest(bins: &[Bin; MAX_BINS as usize], scale: &Scale) -> Option<(f64, BinRule)> {
-    let mut right_cost = [0.0; MAX_BINS as usize];
+fn cheapest<const N: usize>(bins: &[Bin; N], scale: &Scale) -> Option<(f64, BinRule)> {
+    let mut right_cost = [0.0; N];
     let mut right = EMPTY;
     for i in (1..=scale.last).rev() {
         right = right.join(bins[i]);

@@ -50,7 +50,7 @@ pub fn cull(boxes: &[Aabb], view: &View, size_px: [u32; 2], min_px: f32, limit: 
 }
 
 /// Tests and measures boxes, with what depends only on the view worked out once.
-struct Ruler {
+pub struct Ruler {
     eye: Vec3,
     right: Vec3,
     up: Vec3,
@@ -64,7 +64,8 @@ struct Ruler {
 }
 
 impl Ruler {
-    fn new(view: &View, size_px: [u32; 2]) -> Self {
+    /// For a view of that many pixels.
+    pub fn new(view: &View, size_px: [u32; 2]) -> Self {
         let side = |axis: Vec3, half: f32| if view.orthographic { (axis, half) } else { (axis - view.forward * half, 0.0) };
         let (right, up, half) = (view.right, view.up, view.half_size);
         Self {
@@ -81,7 +82,7 @@ impl Ruler {
 
     /// The greater extent of the box on the screen, at its nearest depth; `None` if it is outside.
     #[inline]
-    fn pixels(&self, cell: &Aabb) -> Option<f32> {
+    pub fn pixels(&self, cell: &Aabb) -> Option<f32> {
         let centre = cell.centre() - self.eye;
         let half = cell.size() * 0.5;
         let (depth, reach) = (centre.dot(self.forward), half.dot(self.forward.abs()));

@@ -38,10 +38,12 @@ struct Edge {
     @location(3) @interpolate(flat) color: vec4f,
     // From 0 for the first box to 1 for the last.
     @location(4) @interpolate(flat) lateness: f32,
+    // The width of the halo, in points.
+    @location(5) @interpolate(flat) halo_width: f32,
 }
 
 // Nowhere: a quad whose corners fall together.
-const NOWHERE = Edge(vec4f(2.0, 2.0, 0.5, 1.0), vec4f(0.0), vec2f(1.0), 0.0, vec4f(0.0), 0.0);
+const NOWHERE = Edge(vec4f(2.0, 2.0, 0.5, 1.0), vec4f(0.0), vec2f(1.0), 0.0, vec4f(0.0), 0.0, 0.0);
 
 // What is left of the interval `t` where a distance that runs from `a` to `b` is not negative.
 fn cut(t: vec2f, a: f32, b: f32) -> vec2f {
@@ -114,7 +116,11 @@ fn vertex(
 
     let span = q_px - p_px;
     let direction = select(vec2f(1.0, 0.0), span / length(span), length(span) > 1e-6);
-    let reach = 0.5 * style.halo_width * view.pixels_per_point + 0.5;
+    // Short edges have less of a halo: where many of them crowd together it would only darken the
+    // picture, and most of their cost is the pixels it takes.
+    let short = clamp(length(span) / (16.0 * view.pixels_per_point), 0.0, 1.0);
+    let halo_width = mix(style.width, style.halo_width, max(short, style.on_top));
+    let reach = 0.5 * halo_width * view.pixels_per_point + 0.5;
     let end = select(p_px - direction * reach, q_px + direction * reach, i % 2u == 1u);
     let aside = vec2f(-direction.y, direction.x) * select(-reach, reach, (i / 2u) % 2u == 1u);
     let ndc = (end + aside) / view.size * 2.0 - 1.0;
@@ -127,8 +133,9 @@ fn vertex(
     if t.x > 0.0 && a.z > view.near {
         edge.dash_start = length(p_px - on_screen(a));
     }
-    edge.color = vec4f(mix(color.rgb, style.color.rgb, style.color.a), color.a);
+    edge.color = mix(color, vec4f(style.color.rgb, 1.0), style.color.a);
     edge.lateness = f32(instance) / view.boxes;
+    edge.halo_width = halo_width;
     return edge;
 }
 
@@ -177,13 +184,13 @@ fn fragment(edge: Edge) -> Drawn {
     var drawn: Drawn;
     if in_front(middle, depth) {
         let core = coverage(style.width, away);
-        drawn.color = over_halo(edge.color, core, style.halo.a * coverage(style.halo_width, away));
+        drawn.color = over_halo(edge.color, core, style.halo.a * coverage(edge.halo_width, away));
         let spared = 8.0 * view.depth_step * select(depth, 1.0, view.orthographic > 0.5);
         drawn.depth = max(line_depth(depth + spared * (select(1.0, 0.0, core >= 0.5) - edge.lateness)), style.on_top);
     } else {
         let dash = dashed(edge.dash_start + t * length(span)) * max(view.hidden, style.on_top);
         let core = style.hidden_alpha * coverage(style.hidden_width, away);
-        let halo_width = style.hidden_width + style.halo_width - style.width;
+        let halo_width = style.hidden_width + edge.halo_width - style.width;
         let halo = style.hidden_halo_alpha * coverage(halo_width, away);
         drawn.color = dash * over_halo(edge.color, core, halo);
         drawn.depth = style.on_top;

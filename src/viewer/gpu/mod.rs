@@ -33,10 +33,11 @@ mod view;
 
 use std::sync::Arc;
 
+use crate::render::Picture;
+
 pub use callback::{comfortable_boxes, install, paint, size_px};
-pub use cull::{Culled, cull};
+pub use cull::{Culled, Ruler, cull};
 pub use overlay::{BoxInstance, Overlay};
-pub use picture::Picture;
 pub use raster::{Raster, RasterMesh};
 pub use renderer::{PaneId, Renderer};
 pub use view::View;

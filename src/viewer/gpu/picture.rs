@@ -7,35 +7,12 @@ use eframe::wgpu;
 use super::layouts::Layouts;
 use super::pipeline::{Pass, Recipe};
 use super::targets::{COLOR, SURFACE, texture};
+use crate::render::Picture;
 
-/// A traced picture with the depth of what it shows. It may be smaller than the viewport, as coarse
-/// passes are, and is then stretched over it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Picture {
-    /// Changes whenever the content does.
-    pub generation: u64,
-    /// In pixels.
-    pub width: u32,
-    /// In pixels.
-    pub height: u32,
-    /// Four bytes a pixel, the top row first: gamma-encoded, and multiplied by opacity where it is
-    /// not opaque; the background shows through.
-    pub rgba: Vec<u8>,
-    /// The linear depth of each pixel in the scaled space, infinite for a miss. Passes over the same
-    /// view share it: it goes to the GPU only when it is another one.
-    pub depth: Arc<Vec<f32>>,
-}
-
-impl Picture {
-    /// Whether the lists are as long as the size says.
-    pub fn is_consistent(&self) -> bool {
-        let pixels = self.width as usize * self.height as usize;
-        pixels > 0 && self.rgba.len() == pixels * 4 && self.depth.len() == pixels
-    }
-
-    pub(super) fn size(&self) -> [u32; 2] {
-        [self.width, self.height]
-    }
+/// Whether the lists are as long as the size says.
+fn is_consistent(picture: &Picture) -> bool {
+    let pixels = picture.width as usize * picture.height as usize;
+    pixels > 0 && picture.rgba.len() == pixels * 4 && picture.depth.len() == pixels
 }
 
 /// Draws pictures.
@@ -84,11 +61,11 @@ impl PictureTextures {
         picture: &Picture,
     ) -> Option<Self> {
         let most = device.limits().max_texture_dimension_2d;
-        if !picture.is_consistent() || picture.width.max(picture.height) > most {
+        if !is_consistent(picture) || picture.width.max(picture.height) > most {
             return None;
         }
-        let fits = earlier.filter(|e| [e.color.width(), e.color.height()] == picture.size());
-        let mut there = fits.unwrap_or_else(|| Self::new(device, layouts, picture.size()));
+        let fits = earlier.filter(|e| [e.color.width(), e.color.height()] == [picture.width, picture.height]);
+        let mut there = fits.unwrap_or_else(|| Self::new(device, layouts, [picture.width, picture.height]));
         if there.generation != Some(picture.generation) {
             write(queue, &there.color, &picture.rgba);
             if !there.uploaded_depth.as_ref().is_some_and(|d| Arc::ptr_eq(d, &picture.depth)) {

@@ -121,7 +121,7 @@ impl Renderer {
     fn draw(&self, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder, pane: &Pane, list: &DrawList) {
         let size = pane.targets.size();
         let depth_size = match &list.base {
-            Base::Picture(picture) => picture.size(),
+            Base::Picture(picture) => [picture.width, picture.height],
             _ => size,
         };
         pane.view.set(queue, &ViewUniform::new(list, size, depth_size));

@@ -12,7 +12,10 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::{Base, BoxInstance, DrawList, Overlay, Picture, View};
+use super::{Base, BoxInstance, DrawList, Overlay, View};
+use crate::geometry::Aabb;
+use crate::render::Picture;
+use crate::scene::Camera;
 
 /// A view along -z onto the plane z = 0 from distance 2, which spans -1..1 there.
 fn view(orthographic: bool) -> View {
@@ -48,7 +51,14 @@ fn wall(size: u32) -> Base {
 fn wall_at(size: u32, depth: f32) -> Base {
     let pixels = (size * size) as usize;
     let rgba = [128, 128, 128, 255].repeat(pixels);
-    Base::Picture(Arc::new(Picture { generation: 1, width: size, height: size, rgba, depth: Arc::new(vec![depth; pixels]) }))
+    Base::Picture(Arc::new(picture(1, size, size, rgba, vec![depth; pixels])))
+}
+
+/// A picture of which only what is seen matters.
+fn picture(generation: u64, width: u32, height: u32, rgba: Vec<u8>, depth: Vec<f32>) -> Picture {
+    let camera = Camera::framing(&Aabb::EMPTY, glam::Vec3::Z, glam::Vec3::Y, 1.0);
+    let range = crate::render::Range { min: 0.0, max: 1.0 };
+    Picture { generation, request: 1, camera, width, height, rgba, depth: Arc::new(depth), range, progress: Default::default() }
 }
 
 const YELLOW: [u8; 4] = [255, 230, 40, 255];

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use image::RgbaImage;
 
 use super::device::Headless;
-use super::{YELLOW, boxed, list, overlay, view, wall, wall_at};
+use super::{YELLOW, boxed, list, overlay, picture, view, wall, wall_at};
 use crate::viewer::gpu::{Base, BoxInstance, DrawList, Overlay};
 
 /// How many pixels of a row or column near `at` are nearly yellow, and how many differ from the wall
@@ -53,7 +53,7 @@ fn hidden_lines_can_be_left_out_but_the_selected_box_stays() {
     let mut hidden = one_box(256, square(-0.5));
     hidden.hidden_lines = false;
     assert_eq!(along_row(&gpu.shot("hidden_off", &hidden), 192), (0, 0));
-    let selected = Overlay { generation: 2, selected: Some(square(-0.5)), ..Overlay::default() };
+    let selected = Overlay { generation: 2, selected: Some(BoxInstance { color: [0; 4], ..square(-0.5) }), ..Overlay::default() };
     hidden.overlay = Some(Arc::new(selected));
     assert!(along_row(&gpu.shot("hidden_selected", &hidden), 192).1 > 40);
 }
@@ -83,7 +83,7 @@ fn a_slanted_surface_does_not_swallow_the_lines_on_it() {
     };
     let depth: Vec<f32> = (0..size).flat_map(|row| std::iter::repeat_n(floor(row), size as usize)).collect();
     let rgba = [128, 128, 128, 255].repeat((size * size) as usize);
-    let picture = crate::viewer::gpu::Picture { generation: 1, width: size, height: size, rgba, depth: Arc::new(depth) };
+    let picture = picture(1, size, size, rgba, depth);
     let mut standing = list(size, Base::Picture(Arc::new(picture)));
     standing.overlay = overlay(vec![boxed([-0.2, -0.5, -1.0], [0.2, -0.1, 0.5])]);
     let image = gpu.shot("floor", &standing);

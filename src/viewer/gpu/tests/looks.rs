@@ -103,6 +103,40 @@ fn a_scene_with_boxes_at_several_levels() {
     }
 }
 
+/// The lecture's figure: flat triangles seen from above, and the boxes around them.
+#[test]
+fn flat_boxes_around_flat_triangles() {
+    let Some(mut gpu) = Headless::new("flat boxes") else { return };
+    let corner = |i: usize| {
+        let (x, y) = ((i * 37 % 16) as f32, (i * 23 % 11) as f32);
+        [Vec3::new(x, y, 0.0), Vec3::new(x + 1.1, y + 0.3, 0.0), Vec3::new(x + 0.4, y + 1.3, 0.0)]
+    };
+    let positions: Vec<Vec3> = (0..16).flat_map(corner).collect();
+    let mesh = Mesh { positions, triangles: (0..16).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(), ..Mesh::default() };
+    let scene = Scene { meshes: vec![mesh], instances: vec![Instance::identity(0)], ..Scene::default() };
+    let geometry = Arc::new(Geometry::new(&scene, &LoadCx::unattended()).expect("small"));
+
+    let palette = Palette::of(eframe::egui::Theme::Dark);
+    let mut list = list(&geometry, palette);
+    let aspect = SIZE[0] as f32 / SIZE[1] as f32;
+    let projection = Projection::Orthographic { height: 1.0 };
+    let camera = Camera { eye: Vec3::Z, target: Vec3::ZERO, up: Vec3::Y, projection };
+    list.view = View::new(&camera.reframed(geometry.world_bounds(), aspect), geometry.space(), aspect);
+    let boxes = (0..=4).flat_map(|at| colored(&boxes(&geometry, at), at, 0..=4)).collect();
+    let selected = Some(BoxInstance::new(&self::boxes(&geometry, 2)[1], [255; 4]));
+    list.overlay = Some(Arc::new(Overlay { generation: 1, boxes, planes: Vec::new(), selected }));
+    let image = gpu.shot("look_lecture", &list);
+    // The root's box is whole: its upper edge has one colour all along.
+    let root = geometry.bounds();
+    let along = (1..40).map(|i| {
+        let x = root.min.x + root.size().x * i as f32 / 40.0;
+        let at = list.view.project(Vec3::new(x, root.max.y, 0.0), SIZE).expect("in front").0;
+        image.get_pixel(at.x as u32, at.y as u32).0
+    });
+    let background = list.background;
+    assert!(along.clone().all(|p| p[1].abs_diff(background[1]) > 40), "{:?}", along.collect::<Vec<_>>());
+}
+
 /// Not a test of speed; prints what a frame costs: `cargo test viewer::gpu -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures"]

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::device::Headless;
-use super::{list, wall};
-use crate::viewer::gpu::{Base, Picture};
+use super::{list, picture, wall};
+use crate::viewer::gpu::Base;
 
 /// Red, green above blue, white.
 fn quarters(generation: u64) -> Base {
     let rgba = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]].concat();
-    Base::Picture(Arc::new(Picture { generation, width: 2, height: 2, rgba, depth: Arc::new(vec![1.0; 4]) }))
+    Base::Picture(Arc::new(picture(generation, 2, 2, rgba, vec![1.0; 4])))
 }
 
 #[test]
@@ -29,9 +29,9 @@ fn a_coarse_picture_fills_the_target_the_right_way_up() {
 fn a_picture_of_the_same_size_is_kept_to_the_bit() {
     let Some(mut gpu) = Headless::new("a picture to the bit") else { return };
     let rgba: Vec<u8> = (0..64 * 64 * 4).map(|i| if i % 4 == 3 { 255 } else { (i * 7 % 256) as u8 }).collect();
-    let depth = Arc::new(vec![f32::INFINITY; 64 * 64]);
-    let picture = Picture { generation: 1, width: 64, height: 64, rgba: rgba.clone(), depth };
-    let list = list(64, Base::Picture(Arc::new(picture)));
+    let depth = vec![f32::INFINITY; 64 * 64];
+    let same_size = picture(1, 64, 64, rgba.clone(), depth);
+    let list = list(64, Base::Picture(Arc::new(same_size)));
     assert_eq!(gpu.shot("same_size", &list).into_raw(), rgba);
     assert_eq!(gpu.painted(&list, [64, 64]).into_raw(), rgba, "and in the window");
 }
@@ -39,12 +39,12 @@ fn a_picture_of_the_same_size_is_kept_to_the_bit() {
 #[test]
 fn the_background_shows_where_the_picture_lets_it() {
     let Some(mut gpu) = Headless::new("the background") else { return };
-    let picture = Picture { generation: 1, width: 1, height: 1, rgba: vec![0; 4], depth: Arc::new(vec![f32::INFINITY]) };
-    let mut list = list(8, Base::Picture(Arc::new(picture)));
+    let clear = picture(1, 1, 1, vec![0; 4], vec![f32::INFINITY]);
+    let mut list = list(8, Base::Picture(Arc::new(clear)));
     assert_eq!(gpu.shot("miss", &list).get_pixel(4, 4).0, list.background);
     list.base = Base::Nothing;
     assert_eq!(gpu.shot("nothing", &list).get_pixel(4, 4).0, list.background);
-    let broken = Picture { generation: 2, width: 9, height: 9, ..Picture::default() };
+    let broken = picture(2, 9, 9, Vec::new(), Vec::new());
     list.base = Base::Picture(Arc::new(broken));
     assert_eq!(gpu.shot("broken", &list).get_pixel(4, 4).0, list.background);
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use eframe::egui::{self, Rect, pos2, vec2};
 
 use super::device::Headless;
-use super::list;
-use crate::viewer::gpu::{Base, Picture, install, paint, size_px};
+use super::{list, picture};
+use crate::viewer::gpu::{Base, install, paint, size_px};
 
 /// Two viewports side by side, each in a colour of its own.
 struct TwoPanes;
@@ -16,7 +16,7 @@ impl eframe::App for TwoPanes {
         for (pane, rgb) in [(1, [200, 30, 30]), (2, [30, 30, 200])] {
             let rect = Rect::from_min_size(pos2(10.0 + 60.0 * (pane - 1) as f32, 10.0), vec2(50.0, 80.0));
             let rgba = [rgb[0], rgb[1], rgb[2], 255].to_vec();
-            let picture = Picture { generation: pane, width: 1, height: 1, rgba, depth: Arc::new(vec![1.0]) };
+            let picture = picture(pane, 1, 1, rgba, vec![1.0]);
             let mut list = list(0, Base::Picture(Arc::new(picture)));
             list.size_px = size_px(rect, ui.ctx().pixels_per_point());
             paint(ui.painter(), rect, pane, list);

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::scene::{Camera, Geometry, Projection, Scene};
+use super::{Camera, Geometry, Projection, Scene};
 use glam::Vec3;
 
 /// A camera as the user writes it; what is not said comes from the scene.
@@ -15,16 +15,16 @@ pub struct CameraSpec {
 }
 
 impl CameraSpec {
+    /// The camera asked for, or the one that suits the scene.
+    pub fn or_first(spec: Option<&Self>, scene: &Scene, geometry: &Geometry, aspect: f32) -> Camera {
+        spec.map_or_else(|| scene.first_camera(geometry.world_bounds(), aspect), |spec| spec.in_scene(scene))
+    }
+
     /// The camera it describes in a scene.
     pub fn in_scene(&self, scene: &Scene) -> Camera {
         let projection = self.projection.unwrap_or(Projection::Perspective { fov_y: Camera::DEFAULT_FOV_Y });
         Camera { eye: self.eye, target: self.target, up: self.up.unwrap_or(scene.up), projection }
     }
-}
-
-/// The camera asked for, or the one that suits the scene.
-pub fn camera(spec: Option<&CameraSpec>, scene: &Scene, geometry: &Geometry, aspect: f32) -> Camera {
-    spec.map_or_else(|| scene.first_camera(geometry.world_bounds(), aspect), |spec| spec.in_scene(scene))
 }
 
 impl FromStr for CameraSpec {

@@ -1,0 +1,221 @@
+//! The window: one frame after another. [`eframe::App::logic`] takes in what has finished and carries
+//! out what was asked for; [`eframe::App::ui`] draws the panels, which only read and ask.
+
+use std::sync::Arc;
+
+use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, RichText, ScrollArea, Ui, ViewportCommand};
+
+use super::command::Command;
+use super::dialogs::{FileDialog, SystemDialog};
+use super::gpu;
+use super::options::ViewerOptions;
+use super::pace::Pace;
+use super::panels::{self, Commands};
+use super::screenshot::Screenshot;
+use super::settings::{Settings, ThemeChoice};
+use super::state::State;
+use super::theme::{self, Palette};
+use super::workers::Shared;
+use crate::task::{Budget, Pool};
+
+/// Where settings are kept in eframe's storage.
+const SETTINGS: &str = "settings";
+/// What opens when nothing else was asked for.
+const FIRST_SCENE: &str = "builtin:lecture";
+
+/// The program's window.
+pub struct App {
+    state: State,
+    commands: Commands,
+    screenshot: Option<Screenshot>,
+    pace: Pace,
+    /// Grows when the layout is reset: panels forget their sizes with their names.
+    layout: u64,
+}
+
+impl App {
+    /// Opens the window with what was asked for on the command line.
+    ///
+    /// # Errors
+    /// If the system grants no thread.
+    pub fn new(cc: &eframe::CreationContext<'_>, options: ViewerOptions) -> std::io::Result<Self> {
+        Self::with_dialog(cc, options, Box::new(SystemDialog))
+    }
+
+    /// The same with another way to ask for files.
+    ///
+    /// # Errors
+    /// If the system grants no thread.
+    pub fn with_dialog(
+        cc: &eframe::CreationContext<'_>,
+        options: ViewerOptions,
+        dialog: Box<dyn FileDialog>,
+    ) -> std::io::Result<Self> {
+        theme::apply(&cc.egui_ctx);
+        let box_limit = cc.wgpu_render_state.as_ref().map_or(0, |render_state| {
+            gpu::install(render_state);
+            gpu::comfortable_boxes(render_state)
+        });
+        let stored: Option<Settings> = cc.storage.and_then(|s| eframe::get_value(s, SETTINGS));
+        let mut settings = if options.is_scripted() { Settings::default() } else { stored.unwrap_or_default() };
+        options.apply(&mut settings);
+
+        let ctx = cc.egui_ctx.clone();
+        let budget = options.memory_bytes.map_or_else(Budget::half_of_machine, Budget::new);
+        let shared = Shared { pool: Pool::new("work", options.threads), budget, wake: Arc::new(move || ctx.request_repaint()) };
+        let mut state = State::new(settings, shared, dialog, box_limit)?;
+        state.first_camera = options.camera;
+        state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
+        let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, options.measure));
+        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout: 0 };
+        app.follow_settings(&cc.egui_ctx);
+        Ok(app)
+    }
+
+    /// What the window knows: for tests.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn follow_settings(&self, ctx: &Context) {
+        ctx.set_theme(match self.state.settings.theme {
+            ThemeChoice::System => egui::ThemePreference::System,
+            ThemeChoice::Light => egui::ThemePreference::Light,
+            ThemeChoice::Dark => egui::ThemePreference::Dark,
+        });
+        ctx.set_zoom_factor(self.state.settings.scale);
+    }
+
+    fn carry_out(&mut self, ctx: &Context) {
+        panels::menu::keys(ctx, &self.state, &mut self.commands);
+        for command in std::mem::take(&mut self.commands) {
+            match command {
+                Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+                Command::FullScreen => {
+                    let full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
+                    ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!full));
+                }
+                Command::ResetLayout => self.layout += 1,
+                command => self.state.carry_out(command),
+            }
+            self.follow_settings(ctx);
+        }
+    }
+
+    /// A file dropped anywhere on the window is opened.
+    fn take_dropped(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_string_lossy().into_owned()));
+        self.commands.extend(dropped.map(Command::Open));
+    }
+
+    fn panel(&self, name: &str) -> egui::Id {
+        egui::Id::unique((name, self.layout))
+    }
+
+    fn sides(&mut self, ui: &mut Ui) {
+        let (state, commands) = (&self.state, &mut self.commands);
+        let narrow = ui.available_width() < theme::FOLD_BELOW;
+        let id = |name: &str| egui::Id::unique((name, self.layout));
+        Panel::left(id("left")).default_size(theme::LEFT_PANEL).resizable(true).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                panels::scene::show(ui, state, commands);
+                ui.separator();
+                panels::structure::show(ui, state, commands);
+                ui.separator();
+                panels::overlay::show(ui, state, commands);
+            });
+        });
+        if !narrow {
+            Panel::right(id("right")).default_size(theme::RIGHT_PANEL).resizable(true).show(ui, |ui| {
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| panels::statistics::show(ui, state, commands));
+            });
+        } else {
+            Panel::right(id("strip")).exact_size(theme::STRIP).resizable(false).show(ui, |ui| {
+                ui.menu_button("Σ", |ui| {
+                    ui.set_width(theme::RIGHT_PANEL);
+                    panels::statistics::show(ui, state, commands);
+                })
+                .response
+                .on_hover_text("Statistics");
+            });
+        }
+    }
+
+    fn centre(&mut self, ui: &mut Ui) {
+        let id = self.panel("bottom");
+        let (state, commands) = (&self.state, &mut self.commands);
+        let mut size_px = state.size_px;
+        Panel::bottom(id).default_size(theme::BOTTOM_PANEL).resizable(true).show(ui, |ui| {
+            panels::timings::show(ui, state, commands);
+        });
+        CentralPanel::no_frame().show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let bar =
+                Frame::NONE.fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(theme::GUTTER as i8, theme::GRID as i8));
+            bar.show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                ScrollArea::horizontal().show(ui, |ui| panels::toolbar::show(ui, state, commands));
+            });
+            error(ui, state, commands);
+            size_px = panels::viewport::show(ui, state, commands);
+        });
+        self.state.size_px = size_px;
+    }
+}
+
+/// The message that something went wrong, until it is put away.
+fn error(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let Some(error) = &state.error else { return };
+    let palette = Palette::in_ui(ui);
+    Frame::NONE.fill(palette.stripe).inner_margin(Margin::same(theme::GUTTER as i8)).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button("Dismiss").clicked() {
+                    commands.push(Command::Dismiss);
+                }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    ui.add(egui::Label::new(RichText::new(format!("✖ {error}")).color(palette.fail)).wrap());
+                });
+            });
+        });
+    });
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
+        self.take_dropped(ctx);
+        self.carry_out(ctx);
+        self.state.advance();
+        if let Some(screenshot) = &mut self.screenshot {
+            screenshot.advance(ctx, &self.state, &self.pace, &mut self.commands);
+        }
+        // Progress bars move; everything else wakes the window itself.
+        if self.state.loading.is_some() || self.state.building.is_some() || self.state.measuring.is_some() {
+            ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
+        }
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let ui_secs = frame.info().cpu_usage.map(f64::from);
+        self.pace.frame(ui_secs, &self.state);
+        Panel::top(self.panel("menu"))
+            .exact_size(theme::TOP_BAR)
+            .show(ui, |ui| panels::menu::show(ui, &self.state, &mut self.commands));
+        Panel::bottom(self.panel("status")).exact_size(theme::ROW).show(ui, |ui| {
+            panels::status::show(ui, &self.state, ui_secs, &mut self.commands);
+        });
+        self.sides(ui);
+        self.centre(ui);
+        panels::help::show(ui, &self.state, &mut self.commands);
+        panels::path::show(ui, &self.state, &mut self.commands);
+        if !self.commands.is_empty() {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        if self.screenshot.is_none() {
+            eframe::set_value(storage, SETTINGS, &self.state.settings);
+        }
+    }
+}

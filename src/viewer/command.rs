@@ -1,0 +1,66 @@
+//! What panels ask for. They never change shared state in the middle of a frame: they send a
+//! command, and [`super::state::State::carry_out`] does it afterwards.
+
+use super::settings::{Navigation, OverlaySettings, ThemeChoice};
+use crate::accel::params::ParamValues;
+use crate::geometry::tri::TestKind;
+use crate::render::{Mode, Range};
+use crate::scene::Camera;
+use glam::Vec2;
+
+/// One thing to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Open a file or a built-in scene by name.
+    Open(String),
+    /// Ask for a file with the system's dialog.
+    OpenDialog,
+    /// Show, or hide, the field for a path.
+    AskForPath(bool),
+    /// Stop loading.
+    CancelLoad,
+    /// Show another structure.
+    Structure(&'static str),
+    /// Build the shown structure with other parameters.
+    Params(ParamValues),
+    /// Use another triangle test.
+    Test(TestKind),
+    /// Stop building; the last structure stays.
+    CancelBuild,
+    /// Show something else of the hits.
+    Mode(Mode),
+    /// Map amounts with a fixed range, or with one that suits.
+    HeatRange(Option<Range>),
+    /// Other boxes and planes.
+    Overlay(OverlaySettings),
+    /// Look from elsewhere.
+    Camera(Camera),
+    /// Say what is there: (-1, -1) is the lower left corner of the view, (1, 1) the upper right.
+    Pick(Vec2),
+    /// Frame the whole model.
+    FrameAll,
+    /// Between perspective and orthographic.
+    ToggleProjection,
+    /// Samples after which to rest.
+    MaxSamples(u32),
+    /// Time every structure on the present view.
+    Measure,
+    /// Stop timing.
+    CancelMeasure,
+    /// Put away the message.
+    Dismiss,
+    /// Light, dark, or as the system has it.
+    Theme(ThemeChoice),
+    /// Which button does what.
+    Navigation(Navigation),
+    /// Enlarge or shrink everything; 1 is the system's size.
+    Scale(f32),
+    /// Show, or hide, the page of keys.
+    Help(bool),
+    /// Panels back to their first sizes.
+    ResetLayout,
+    /// In and out of full screen.
+    FullScreen,
+    /// Close the window.
+    Quit,
+}

@@ -1,0 +1,84 @@
+//! Structures that were built and are kept, so that going back to one costs nothing.
+
+use std::sync::Arc;
+
+use crate::accel::Accel;
+use crate::accel::params::ParamValues;
+use crate::accel::registry::Entry;
+use crate::accel::stats::Stats;
+use crate::geometry::tri::TestKind;
+use crate::task::Phase;
+
+/// What a structure was built from, besides the scene.
+#[derive(Clone, Debug)]
+pub struct Key {
+    /// Which structure.
+    pub entry: &'static Entry,
+    /// With what parameters.
+    pub params: ParamValues,
+    /// With which triangle test.
+    pub test: TestKind,
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        self.entry.id == other.entry.id && self.params == other.params && self.test == other.test
+    }
+}
+
+/// A structure, and what is known of it.
+#[derive(Clone)]
+pub struct Built {
+    /// What it was built from.
+    pub key: Key,
+    /// The structure.
+    pub accel: Arc<dyn Accel>,
+    /// Wall-clock seconds of the build.
+    pub build_secs: f64,
+    /// The same by phase.
+    pub phases: Vec<Phase>,
+    /// Figures, once they are worked out.
+    pub stats: Option<Arc<Stats>>,
+}
+
+impl std::fmt::Debug for Built {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Built").field("id", &self.key.entry.id).finish_non_exhaustive()
+    }
+}
+
+/// The kept structures, the last used at the end.
+#[derive(Debug, Default)]
+pub struct Kept(Vec<Built>);
+
+impl Kept {
+    /// The structure of that key, which counts as used.
+    pub fn take_up(&mut self, key: &Key) -> Option<Built> {
+        let at = self.0.iter().position(|b| b.key == *key)?;
+        let built = self.0.remove(at);
+        self.0.push(built.clone());
+        Some(built)
+    }
+
+    /// Keeps a structure, as the last used.
+    pub fn keep(&mut self, built: Built) {
+        self.0.retain(|b| b.key != built.key);
+        self.0.push(built);
+    }
+
+    /// Adds the figures of a structure.
+    pub fn add_stats(&mut self, key: &Key, stats: &Arc<Stats>) {
+        self.0.iter_mut().filter(|b| b.key == *key).for_each(|b| b.stats = Some(Arc::clone(stats)));
+    }
+
+    /// Drops the least recently used but for `shown`; false if there is none.
+    pub fn drop_oldest(&mut self, shown: Option<&Key>) -> bool {
+        let at = self.0.iter().position(|b| Some(&b.key) != shown);
+        at.map(|at| self.0.remove(at)).is_some()
+    }
+
+    /// Drops all.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+}

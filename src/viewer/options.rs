@@ -1,0 +1,65 @@
+//! What the command line says to the window.
+
+use std::path::PathBuf;
+
+use super::settings::{Settings, ThemeChoice};
+use crate::render::Mode;
+use crate::scene::CameraSpec;
+
+/// How the window begins. What is not set comes from the settings of the last time.
+#[derive(Clone, Debug, Default)]
+pub struct ViewerOptions {
+    /// The model to open.
+    pub model: Option<String>,
+    /// The structure's id.
+    pub structure: Option<String>,
+    /// What is shown.
+    pub mode: Option<Mode>,
+    /// From where it is seen at first.
+    pub camera: Option<CameraSpec>,
+    /// The depth of the boxes.
+    pub depth: Option<u32>,
+    /// Only the boxes of leaves.
+    pub leaves_only: bool,
+    /// No boxes and planes at all.
+    pub no_overlay: bool,
+    /// Samples after which to rest.
+    pub samples: Option<u32>,
+    /// Light or dark.
+    pub theme: Option<ThemeChoice>,
+    /// The window's size in points.
+    pub size: Option<[f32; 2]>,
+    /// Measure every structure once the picture is there; only with `screenshot`.
+    pub measure: bool,
+    /// Save a picture of the window here once everything is there, and close.
+    pub screenshot: Option<PathBuf>,
+    /// Threads that load, build and measure; 0 for one a core.
+    pub threads: usize,
+    /// The memory budget.
+    pub memory_bytes: Option<u64>,
+}
+
+impl ViewerOptions {
+    /// Whether the window is driven by the command line alone: then nothing of the last time shows.
+    pub const fn is_scripted(&self) -> bool {
+        self.screenshot.is_some()
+    }
+
+    /// Puts what is set into the settings.
+    pub fn apply(&self, settings: &mut Settings) {
+        if let Some(structure) = &self.structure {
+            settings.structure.clone_from(structure);
+        }
+        settings.mode = self.mode.unwrap_or(settings.mode);
+        settings.max_samples = self.samples.unwrap_or(settings.max_samples);
+        settings.theme = self.theme.unwrap_or(settings.theme);
+        let overlay = &mut settings.overlay;
+        if let Some(depth) = self.depth {
+            (overlay.depth, overlay.from_depth, overlay.boxes) = (depth, depth, true);
+        }
+        overlay.leaves_only |= self.leaves_only;
+        if self.no_overlay {
+            (overlay.boxes, overlay.planes) = (false, false);
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The bar at the top: File, View, Window, Help.
+
+use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, Ui};
+
+use super::Commands;
+use crate::scene::builtin;
+use crate::viewer::command::Command;
+use crate::viewer::settings::{Navigation, SCALE, ThemeChoice};
+use crate::viewer::state::State;
+
+/// Keys that work everywhere, and what they do.
+pub const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
+/// Opens the field for a path.
+pub const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::L);
+/// Closes the window.
+pub const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
+/// Frames the whole model.
+pub const FRAME_ALL: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::Home);
+/// Between perspective and orthographic.
+pub const PROJECTION: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::P);
+/// In and out of full screen.
+pub const FULL_SCREEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F11);
+/// Larger, smaller, as the system has it.
+pub const LARGER: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Plus);
+/// Smaller.
+pub const SMALLER: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Minus);
+/// The system's size.
+pub const SAME_SIZE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Num0);
+/// One step of enlarging.
+const SCALE_STEP: f32 = 0.25;
+
+/// Draws the bar.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file(ui, state, commands));
+        ui.menu_button("View", |ui| view(ui, state, commands));
+        ui.menu_button("Window", |ui| window(ui, state, commands));
+        ui.menu_button("Help", |ui| {
+            if ui.button("Keys and mouse").clicked() {
+                commands.push(Command::Help(true));
+            }
+        });
+    });
+}
+
+/// Does what was typed, unless a text field has the focus.
+pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
+    let typing = ctx.egui_wants_keyboard_input();
+    let mut on = |shortcut: &KeyboardShortcut, command: Command| {
+        if (!typing || shortcut.modifiers.command) && ctx.input_mut(|i| i.consume_shortcut(shortcut)) {
+            commands.push(command);
+        }
+    };
+    let scale = state.settings.scale;
+    on(&OPEN, Command::OpenDialog);
+    on(&OPEN_PATH, Command::AskForPath(true));
+    on(&QUIT, Command::Quit);
+    on(&FRAME_ALL, Command::FrameAll);
+    on(&PROJECTION, Command::ToggleProjection);
+    on(&FULL_SCREEN, Command::FullScreen);
+    on(&LARGER, Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
+    on(&SMALLER, Command::Scale((scale - SCALE_STEP).max(*SCALE.start())));
+    on(&SAME_SIZE, Command::Scale(1.0));
+    on(&KeyboardShortcut::new(Modifiers::SHIFT, Key::Questionmark), Command::Help(!state.help));
+    on(&KeyboardShortcut::new(Modifiers::NONE, Key::Questionmark), Command::Help(!state.help));
+    escape(ctx, state, commands);
+}
+
+/// Esc ends the innermost of what is going on.
+fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
+    let innermost = [
+        (state.help, Command::Help(false)),
+        (state.asking.is_some(), Command::AskForPath(false)),
+        (state.measuring.is_some(), Command::CancelMeasure),
+        (state.building.is_some(), Command::CancelBuild),
+        (state.loading.is_some(), Command::CancelLoad),
+        (state.error.is_some(), Command::Dismiss),
+    ];
+    if let Some((_, command)) = innermost.into_iter().find(|(on, _)| *on)
+        && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape))
+    {
+        commands.push(command);
+    }
+}
+
+fn item(ui: &mut Ui, text: &str, shortcut: &KeyboardShortcut) -> bool {
+    let keys = ui.ctx().format_shortcut(shortcut);
+    ui.add(egui::Button::new(text).shortcut_text(keys)).clicked()
+}
+
+fn file(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    if item(ui, "Open…", &OPEN) {
+        commands.push(Command::OpenDialog);
+    }
+    if item(ui, "Open a path…", &OPEN_PATH) {
+        commands.push(Command::AskForPath(true));
+    }
+    ui.menu_button("Open recent", |ui| {
+        if state.settings.recent.is_empty() {
+            super::empty(ui, "Nothing was opened yet.");
+        }
+        for model in &state.settings.recent {
+            if ui.button(model).clicked() {
+                commands.push(Command::Open(model.clone()));
+            }
+        }
+    });
+    ui.menu_button("Built-in scenes", |ui| {
+        for scene in builtin::all() {
+            if ui.button(scene.id).on_hover_text(scene.about).clicked() {
+                commands.push(Command::Open(format!("{}{}", builtin::SCHEME, scene.id)));
+            }
+        }
+    });
+    ui.separator();
+    if item(ui, "Quit", &QUIT) {
+        commands.push(Command::Quit);
+    }
+}
+
+fn view(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    if item(ui, "Frame all", &FRAME_ALL) {
+        commands.push(Command::FrameAll);
+    }
+    if item(ui, "Perspective or orthographic", &PROJECTION) {
+        commands.push(Command::ToggleProjection);
+    }
+    ui.menu_button("Samples a pixel", |ui| {
+        for samples in [1, 16, 64, 256, 1024, 4096] {
+            if ui.radio(state.settings.max_samples == samples, samples.to_string()).clicked() {
+                commands.push(Command::MaxSamples(samples));
+            }
+        }
+    });
+    ui.menu_button("Mouse", |ui| {
+        for (choice, text) in [
+            (Navigation::Standard, "Left orbits, middle pans"),
+            (Navigation::Blender, "Blender: middle orbits, Shift+middle pans"),
+        ] {
+            if ui.radio(state.settings.navigation == choice, text).clicked() {
+                commands.push(Command::Navigation(choice));
+            }
+        }
+    });
+}
+
+fn window(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    for (choice, text) in [(ThemeChoice::System, "As the system"), (ThemeChoice::Light, "Light"), (ThemeChoice::Dark, "Dark")] {
+        if ui.radio(state.settings.theme == choice, text).clicked() {
+            commands.push(Command::Theme(choice));
+        }
+    }
+    ui.separator();
+    let scale = state.settings.scale;
+    if item(ui, "Larger", &LARGER) {
+        commands.push(Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
+    }
+    if item(ui, "Smaller", &SMALLER) {
+        commands.push(Command::Scale((scale - SCALE_STEP).max(*SCALE.start())));
+    }
+    if item(ui, "Normal size", &SAME_SIZE) {
+        commands.push(Command::Scale(1.0));
+    }
+    ui.separator();
+    if item(ui, "Full screen", &FULL_SCREEN) {
+        commands.push(Command::FullScreen);
+    }
+    if ui.button("Reset layout").clicked() {
+        commands.push(Command::ResetLayout);
+    }
+}

@@ -1,0 +1,45 @@
+//! The panels of the window, one per file. A panel reads [`super::state::State`] and sends
+//! [`Command`]s; it changes nothing itself.
+
+pub mod bars;
+pub mod help;
+pub mod menu;
+pub mod overlay;
+pub mod path;
+pub mod scene;
+pub mod statistics;
+pub mod status;
+pub mod structure;
+pub mod timings;
+pub mod toolbar;
+pub mod viewport;
+
+use eframe::egui::{self, RichText, Ui};
+
+use super::command::Command;
+use super::theme::{self, Palette};
+
+/// Where panels put what they ask for.
+pub type Commands = Vec<Command>;
+
+/// A panel's heading: small capitals in the dim colour.
+pub fn heading(ui: &mut Ui, text: &str) {
+    ui.add_space(theme::GRID);
+    ui.label(RichText::new(text.to_uppercase()).small().strong().color(Palette::in_ui(ui).dim));
+}
+
+/// A name and its value, the value right-aligned; the tooltip explains the term in a sentence.
+pub fn fact(ui: &mut Ui, name: &str, value: impl Into<String>, help: &str) {
+    let row = ui.horizontal(|ui| {
+        ui.label(RichText::new(name).color(Palette::in_ui(ui).dim));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.add(egui::Label::new(value.into()).truncate());
+        });
+    });
+    row.response.on_hover_text(help);
+}
+
+/// A sentence where there is nothing to show.
+pub fn empty(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).color(Palette::in_ui(ui).dim));
+}

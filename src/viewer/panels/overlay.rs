@@ -1,0 +1,52 @@
+//! Which boxes and planes are drawn over the picture.
+
+use eframe::egui::{Slider, Ui};
+
+use super::{Commands, heading};
+use crate::accel::cell::Layout;
+use crate::viewer::command::Command;
+use crate::viewer::state::State;
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    heading(ui, "Overlay");
+    let Some(layout) = state.layout() else {
+        super::empty(ui, "Boxes appear once a structure is built.");
+        return;
+    };
+    let before = state.settings.overlay;
+    let mut s = before;
+    match layout {
+        Layout::Flat { resolution: [x, y, z], .. } => {
+            ui.checkbox(&mut s.boxes, "Cells").on_hover_text("Boxes of the cells that hold triangles.");
+            ui.checkbox(&mut s.empty_cells, "Empty cells too")
+                .on_hover_text("Cells without triangles: a ray steps through them all the same.");
+            ui.label(format!("{x} × {y} × {z} cells")).on_hover_text("Cells along x, y and z. A grid has no depth.");
+        }
+        Layout::Hierarchy | Layout::Partition => {
+            let boxes = if layout == Layout::Hierarchy { "Node boxes" } else { "Cells" };
+            ui.checkbox(&mut s.boxes, boxes).on_hover_text("The box of each node at the chosen depth.");
+            ui.checkbox(&mut s.leaves_only, "Leaves only").on_hover_text("The boxes that hold triangles, at any depth.");
+            if layout == Layout::Partition {
+                ui.checkbox(&mut s.planes, "Split planes").on_hover_text("The planes that divide the cells at the chosen depth.");
+                ui.checkbox(&mut s.empty_cells, "Empty cells too").on_hover_text("Leaves without triangles.");
+            }
+            let deepest = super::toolbar::deepest(state);
+            let mut range = s.from_depth < s.depth;
+            if ui.checkbox(&mut range, "Range of depths").on_hover_text("Every level from the first to the chosen one.").changed()
+            {
+                s.from_depth = if range { s.depth.saturating_sub(1) } else { s.depth };
+                if range && s.depth == 0 {
+                    (s.from_depth, s.depth) = (0, deepest.min(1));
+                }
+            }
+            if range {
+                ui.add(Slider::new(&mut s.from_depth, 0..=s.depth).text("from"));
+            }
+        }
+    }
+    ui.checkbox(&mut s.hidden_lines, "Hidden lines").on_hover_text("Lines behind the surface, thin and dashed.");
+    if s != before {
+        commands.push(Command::Overlay(s));
+    }
+}

@@ -1,0 +1,87 @@
+//! What is open: name, size, what was left out, warnings.
+
+use eframe::egui::{CollapsingHeader, ProgressBar, RichText, Ui};
+
+use super::{Commands, empty, fact, heading};
+use crate::viewer::command::Command;
+use crate::viewer::format;
+use crate::viewer::state::State;
+use crate::viewer::theme::Palette;
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    heading(ui, "Scene");
+    if let Some((name, job)) = &state.loading {
+        let now = job.progress.snapshot();
+        ui.label(format!("Opening {}", short(name)));
+        let bar = now.fraction.map_or_else(|| ProgressBar::new(0.0).animate(true), ProgressBar::new);
+        ui.add(bar.text(now.phase));
+        if ui.button("Cancel").on_hover_text("Stop loading; what is open stays open.").clicked() {
+            commands.push(Command::CancelLoad);
+        }
+    }
+    let Some(model) = &state.model else {
+        if state.loading.is_none() {
+            empty(ui, "Nothing is open.");
+            if ui.button("Open…").clicked() {
+                commands.push(Command::OpenDialog);
+            }
+        }
+        return;
+    };
+    let (scene, geometry) = (&model.scene, &model.geometry);
+    ui.label(RichText::new(short(&scene.name)).strong()).on_hover_text(&scene.name);
+    fact(
+        ui,
+        "Triangles",
+        format::count(geometry.triangle_count() as u64),
+        "Triangles of all instances, as they are in the file.",
+    );
+    if scene.instances.len() > 1 {
+        let help = "How many times meshes are placed, and how many different meshes there are.";
+        fact(ui, "Instances of meshes", format!("{} of {}", scene.instances.len(), scene.meshes.len()), help);
+    }
+    let size = model.bounds().size();
+    let extent =
+        format!("{} × {} × {}", format::number(size.x.into()), format::number(size.y.into()), format::number(size.z.into()));
+    fact(ui, "Extent", extent, "Width, height and depth of the box around everything, in the file's units.");
+    let help = "Triangles with a corner that is not a finite number: they are left out everywhere.";
+    left_out(ui, "Dropped", geometry.dropped(), help);
+    left_out(
+        ui,
+        "Zero area",
+        geometry.degenerate(),
+        "Triangles without area: no ray can hit them, so structures do not hold them.",
+    );
+    fact(
+        ui,
+        "Loaded in",
+        format::duration(model.load_secs),
+        "Seconds from the click to the triangles: reading, parsing, placing.",
+    );
+    warnings(ui, &scene.warnings);
+}
+
+fn left_out(ui: &mut Ui, name: &str, count: u32, help: &str) {
+    if count > 0 {
+        fact(ui, name, format::count(u64::from(count)), help);
+    }
+}
+
+fn warnings(ui: &mut Ui, warnings: &[String]) {
+    if warnings.is_empty() {
+        return;
+    }
+    let title = if warnings.len() == 1 { "1 warning".to_owned() } else { format!("{} warnings", warnings.len()) };
+    let color = Palette::in_ui(ui).warn;
+    CollapsingHeader::new(RichText::new(format!("⚠ {title}")).color(color)).id_salt("warnings").show(ui, |ui| {
+        for warning in warnings {
+            ui.label(RichText::new(warning).small());
+        }
+    });
+}
+
+/// The last part of a path; a built-in scene's whole name.
+fn short(name: &str) -> &str {
+    name.rsplit(['/', '\\']).next().filter(|part| !part.is_empty()).unwrap_or(name)
+}

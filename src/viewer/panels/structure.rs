@@ -1,0 +1,131 @@
+//! Which structure, with what parameters, and how its build gets on.
+
+use eframe::egui::{CollapsingHeader, ComboBox, DragValue, ProgressBar, Ui};
+
+use super::{Commands, heading};
+use crate::accel::params::{Kind, Param, Value};
+use crate::accel::registry;
+use crate::geometry::tri::TestKind;
+use crate::viewer::command::Command;
+use crate::viewer::state::State;
+
+/// Draws the panel.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    heading(ui, "Structure");
+    ui.add_enabled_ui(!state.is_measuring(), |ui| {
+        choice(ui, state, commands);
+        test(ui, state, commands);
+        parameters(ui, state, commands);
+    });
+    if let Some(building) = &state.building {
+        let now = building.job.progress.snapshot();
+        let bar = now.fraction.map_or_else(|| ProgressBar::new(0.0).animate(true), ProgressBar::new);
+        ui.add(bar.text(format!("Building {}: {}", building.key.entry.name, now.phase)));
+        if ui.button("Cancel").on_hover_text("Stop building; the structure on the screen stays.").clicked() {
+            commands.push(Command::CancelBuild);
+        }
+    }
+}
+
+fn choice(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let chosen = state.settings.entry();
+    let combo = ComboBox::from_id_salt("structure").selected_text(chosen.name).width(ui.available_width());
+    let response = combo.show_ui(ui, |ui| {
+        for entry in registry::ALL {
+            if ui.selectable_label(entry.id == chosen.id, entry.name).on_hover_text(entry.help).clicked() {
+                commands.push(Command::Structure(entry.id));
+            }
+        }
+    });
+    response.response.on_hover_text(chosen.help);
+}
+
+fn test(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    ui.horizontal(|ui| {
+        for kind in TestKind::ALL {
+            let label = if kind == TestKind::Watertight { "Watertight" } else { "Fast" };
+            if ui.radio(state.settings.test == kind, label).on_hover_text(kind.help()).clicked() {
+                commands.push(Command::Test(kind));
+            }
+        }
+    });
+}
+
+fn parameters(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let entry = state.settings.entry();
+    if entry.params.is_empty() {
+        return;
+    }
+    CollapsingHeader::new("Parameters").id_salt("parameters").show(ui, |ui| {
+        let before = state.settings.params_of(entry);
+        let mut values = before.clone();
+        let mut settled = false;
+        for (param, value) in values.iter_mut() {
+            settled |= parameter(ui, param, value);
+        }
+        if settled && values != before {
+            commands.push(Command::Params(values));
+        }
+        if before != entry.defaults() && ui.button("Defaults").clicked() {
+            commands.push(Command::Params(entry.defaults()));
+        }
+    });
+}
+
+/// One parameter; true when its value is to be used. While a number is dragged it lives in the
+/// widget's own memory, so that a build starts once, at the end.
+fn parameter(ui: &mut Ui, param: &'static Param, value: &mut Value) -> bool {
+    let help = if param.unit.is_empty() { param.help.to_owned() } else { format!("{} In {}.", param.help, param.unit) };
+    let row = ui.horizontal(|ui| {
+        let label = ui.label(param.label);
+        ui.with_layout(eframe::egui::Layout::right_to_left(eframe::egui::Align::Center), |ui| {
+            let id = ui.scope_id().with(("parameter", param.id));
+            match (param.kind, value) {
+                (Kind::Int { min, max, .. }, Value::Int(v)) => {
+                    let mut shown = ui.data(|d| d.get_temp(id)).unwrap_or(*v);
+                    let response = ui.add(DragValue::new(&mut shown).range(min..=max)).labelled_by(label.id);
+                    settle(ui, id, &response, shown, v)
+                }
+                (Kind::Float { min, max, .. }, Value::Float(v)) => {
+                    let mut shown = ui.data(|d| d.get_temp(id)).unwrap_or(*v);
+                    let speed = (shown * 0.01).max(0.01);
+                    let widget = DragValue::new(&mut shown).range(min..=max).speed(speed).max_decimals(2);
+                    let response = ui.add(widget).labelled_by(label.id);
+                    settle(ui, id, &response, shown, v)
+                }
+                (Kind::Choice { options }, Value::Choice(v)) => options_of(ui, param, options, v),
+                _ => false,
+            }
+        })
+        .inner
+    });
+    row.response.on_hover_text(help);
+    row.inner
+}
+
+fn settle<T: Copy + PartialEq + Send + Sync + 'static>(
+    ui: &Ui,
+    id: eframe::egui::Id,
+    response: &eframe::egui::Response,
+    shown: T,
+    value: &mut T,
+) -> bool {
+    if response.dragged() || response.has_focus() {
+        ui.data_mut(|d| d.insert_temp(id, shown));
+        return false;
+    }
+    ui.data_mut(|d| d.remove::<T>(id));
+    let changed = *value != shown;
+    *value = shown;
+    changed
+}
+
+fn options_of(ui: &mut Ui, param: &Param, options: &'static [&'static str], value: &mut &'static str) -> bool {
+    let before = *value;
+    ComboBox::from_id_salt(param.id).selected_text(*value).show_ui(ui, |ui| {
+        for option in options {
+            ui.selectable_value(value, *option, *option);
+        }
+    });
+    *value != before
+}

@@ -1,0 +1,88 @@
+//! The row above the viewport: structure, what is shown, depth.
+
+use eframe::egui::{ComboBox, Slider, Ui};
+
+use super::Commands;
+use crate::accel::cell::Layout;
+use crate::accel::registry;
+use crate::geometry::Axis;
+use crate::render::Mode;
+use crate::viewer::command::Command;
+use crate::viewer::state::State;
+
+/// Draws the row.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    ui.horizontal(|ui| {
+        ui.add_enabled_ui(!state.is_measuring(), |ui| structure(ui, state, commands));
+        mode(ui, state, commands);
+        depth(ui, state, commands);
+    });
+}
+
+fn structure(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let chosen = state.settings.entry();
+    for entry in registry::ALL {
+        let tab = ui.selectable_label(entry.id == chosen.id, entry.name).on_hover_text(entry.help);
+        if tab.clicked() {
+            commands.push(Command::Structure(entry.id));
+        }
+    }
+    ui.separator();
+}
+
+fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let chosen = state.settings.mode;
+    let combo = ComboBox::from_id_salt("mode").selected_text(chosen.label()).show_ui(ui, |ui| {
+        for mode in Mode::ALL {
+            if ui.selectable_label(mode == chosen, mode.label()).on_hover_text(mode.help()).clicked() {
+                commands.push(Command::Mode(mode));
+            }
+        }
+    });
+    combo.response.on_hover_text(chosen.help());
+}
+
+/// A grid has no depth: its cells are looked at in layers.
+fn slice(ui: &mut Ui, state: &State, resolution: [u32; 3], commands: &mut Commands) {
+    let before = state.settings.overlay;
+    let mut overlay = before;
+    let axis = overlay.slice_axis.min(2);
+    let slider = Slider::new(&mut overlay.slice, 0..=resolution[axis]).text("Slice");
+    ui.add(slider).on_hover_text("One layer of cells; 0 shows all of them.");
+    for (i, axis) in Axis::ALL.into_iter().enumerate() {
+        if ui
+            .selectable_label(overlay.slice_axis == i, axis.name())
+            .on_hover_text("The axis that layers are counted along.")
+            .clicked()
+        {
+            (overlay.slice_axis, overlay.slice) = (i, overlay.slice.min(resolution[i]));
+        }
+    }
+    if overlay != before {
+        commands.push(Command::Overlay(overlay));
+    }
+}
+
+fn depth(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    match state.layout() {
+        Some(Layout::Hierarchy | Layout::Partition) => {}
+        Some(Layout::Flat { resolution, .. }) => return slice(ui, state, resolution, commands),
+        None => return,
+    }
+    let mut overlay = state.settings.overlay;
+    let deepest = deepest(state);
+    let single = overlay.from_depth == overlay.depth;
+    let slider = Slider::new(&mut overlay.depth, 0..=deepest).text("Depth");
+    let slider =
+        ui.add_enabled(!overlay.leaves_only, slider).on_hover_text("The level of the tree that is drawn: 0 is the root.");
+    if slider.changed() {
+        overlay.from_depth = if single { overlay.depth } else { overlay.from_depth.min(overlay.depth) };
+        commands.push(Command::Overlay(overlay));
+    }
+}
+
+/// The deepest level of the shown structure; a guess until its figures are there.
+pub fn deepest(state: &State) -> u32 {
+    const UNTIL_KNOWN: u32 = 20;
+    state.shown.as_ref().and_then(|b| b.stats.as_ref()).map_or(UNTIL_KNOWN, |stats| stats.max_depth)
+}

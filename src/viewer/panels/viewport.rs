@@ -1,0 +1,240 @@
+//! The 3D view: the picture with boxes over it, what is said on top of it, and the hands.
+
+use std::sync::Arc;
+
+use eframe::egui::{self, Align2, Color32, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use glam::Vec2;
+
+use super::Commands;
+use crate::render::Range;
+use crate::render::colormap::viridis;
+use crate::scene::Camera;
+use crate::viewer::command::Command;
+use crate::viewer::gpu::{self, Base, DrawList, Raster, View};
+use crate::viewer::settings::Navigation;
+use crate::viewer::state::State;
+use crate::viewer::theme::{self, Palette};
+use crate::viewer::{format, navigation};
+
+/// The name of the viewport among viewports.
+const PANE: gpu::PaneId = 0;
+/// What an arrow key turns, in points of dragging.
+const KEY_STEP: f32 = 24.0;
+/// What a key zooms, in points of the wheel.
+const KEY_ZOOM: f32 = 60.0;
+
+/// Draws the view; returns its size in pixels.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
+    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, format!("3D viewport. {}", describe(state))));
+    if response.clicked() || response.drag_started() {
+        response.request_focus();
+    }
+    let pixels_per_point = ui.ctx().pixels_per_point();
+    let size_px = gpu::size_px(rect, pixels_per_point);
+    paint(ui, rect, state, size_px, pixels_per_point);
+    if response.has_focus() {
+        let stroke = egui::Stroke::new(1.0, Palette::in_ui(ui).accent_text);
+        ui.painter().rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Inside);
+    }
+    captions(ui, rect, state);
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
+        commands.push(Command::Pick(in_picture(rect, at)));
+    }
+    if let Some(camera) = hands(ui, &response, rect, state) {
+        commands.push(Command::Camera(camera));
+    }
+    size_px
+}
+
+/// What is to be seen, for those who cannot see it.
+fn describe(state: &State) -> String {
+    let Some(model) = &state.model else { return "Nothing is open.".to_owned() };
+    let structure = state.shown.as_ref().map_or("no structure yet", |b| b.key.entry.name);
+    let samples = state.picture.as_ref().map_or(0, |p| p.progress.samples);
+    let depth = state.settings.overlay.depth;
+    format!("{}, {structure}, boxes at depth {depth}, {samples} samples a pixel.", model.scene.name)
+}
+
+fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point: f32) {
+    let palette = Palette::in_ui(ui);
+    ui.painter().rect_filled(rect, 0.0, palette.background);
+    let Some(model) = &state.model else { return };
+    // A picture and the boxes over it are of one view, also while the next picture is on its way.
+    let camera = state.picture.as_ref().map_or(state.camera, |p| p.camera);
+    let aspect = size_px[0] as f32 / size_px[1] as f32;
+    let base = match &state.picture {
+        Some(picture) => Base::Picture(Arc::clone(picture)),
+        None => Base::Raster(Raster {
+            mesh: Arc::clone(&model.raster),
+            color: palette.preview.to_array(),
+            max_triangles: state.preview_limit(),
+        }),
+    };
+    let overlay = state.shown.as_ref().and(state.overlay.clone());
+    let list = DrawList {
+        view: View::new(&camera, model.geometry.space(), aspect),
+        size_px,
+        pixels_per_point,
+        background: palette.background.to_array(),
+        base,
+        overlay,
+        hidden_lines: state.settings.overlay.hidden_lines,
+    };
+    gpu::paint(ui.painter(), rect, PANE, list);
+    let (there, all) = model.raster.progress();
+    if state.picture.is_none() && there < all {
+        ui.ctx().request_repaint();
+    }
+}
+
+/// What is written over the picture.
+fn captions(ui: &mut Ui, rect: Rect, state: &State) {
+    let inner = rect.shrink(theme::GUTTER);
+    if state.model.is_none() {
+        let text = if state.loading.is_some() { "Opening…" } else { "Drop a model here, or open one from the File menu." };
+        ui.painter().text(
+            rect.center(),
+            Align2::CENTER_CENTER,
+            text,
+            egui::TextStyle::Body.resolve(ui.style()),
+            Palette::in_ui(ui).dim,
+        );
+        return;
+    }
+    if state.shown.is_some() {
+        caption(ui, inner.left_bottom(), Align2::LEFT_BOTTOM, &showing(state));
+    }
+    if let Some(picked) = &state.picked {
+        let above = theme::ROW + theme::GRID;
+        caption(ui, inner.left_bottom() - vec2(0.0, above), Align2::LEFT_BOTTOM, &picked.text);
+    }
+    if let Some(p) = state.picture.as_ref().map(|p| p.progress).filter(|p| p.step > 1) {
+        let text = format!("1/{} resolution after {}", p.step, format::duration(p.secs));
+        caption(ui, inner.right_top(), Align2::RIGHT_TOP, &text);
+    }
+    if let Some((text, until)) = &state.change
+        && let Some(left) = until.checked_duration_since(std::time::Instant::now())
+    {
+        caption(ui, inner.center_top(), Align2::CENTER_TOP, text);
+        ui.ctx().request_repaint_after(left);
+    }
+    if let Some(range) = state.picture.as_ref().map(|p| p.range).filter(|_| state.settings.mode.is_heat()) {
+        legend(ui, inner, state.settings.mode.label(), range);
+    }
+}
+
+/// `Showing 14 of 14 boxes`.
+fn showing(state: &State) -> String {
+    let c = &state.collected;
+    if c.total == 0 && !c.more {
+        return "No boxes at this depth".to_owned();
+    }
+    let beyond = if c.more { " or more" } else { "" };
+    format!("Showing {} of {}{beyond} boxes", format::count(c.shown as u64), format::count(c.total as u64))
+}
+
+/// Text on a plate, so that it can be read over any picture.
+fn caption(ui: &Ui, at: Pos2, align: Align2, text: &str) {
+    let palette = Palette::in_ui(ui);
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), egui::TextStyle::Body.resolve(ui.style()), palette.text);
+    let plate = align.anchor_size(at, galley.size() + vec2(2.0 * theme::GUTTER, theme::GRID));
+    ui.painter().rect_filled(plate, theme::GRID, theme::plate(palette));
+    ui.painter().galley(plate.center() - galley.size() * 0.5, galley, palette.text);
+}
+
+/// The colours of a heat map and what they stand for.
+fn legend(ui: &Ui, inner: Rect, name: &str, range: Range) {
+    const STEPS: u32 = 48;
+    let width = 48.0 * theme::GRID;
+    let palette = Palette::in_ui(ui);
+    let plate =
+        Rect::from_min_max(inner.right_bottom() - vec2(width + 2.0 * theme::GUTTER, 13.0 * theme::GRID), inner.right_bottom());
+    ui.painter().rect_filled(plate, theme::GRID, theme::plate(palette));
+    let bar = Rect::from_min_size(plate.left_top() + vec2(theme::GUTTER, 6.0 * theme::GRID), vec2(width, 2.0 * theme::GRID));
+    for i in 0..STEPS {
+        let x = |i: u32| bar.left() + bar.width() * i as f32 / STEPS as f32;
+        let [r, g, b] = viridis((i as f32 + 0.5) / STEPS as f32).map(|c| (c * 255.0) as u8);
+        let step = Rect::from_min_max(pos2(x(i), bar.top()), pos2(x(i + 1), bar.bottom()));
+        ui.painter().rect_filled(step, 0.0, Color32::from_rgb(r, g, b));
+    }
+    let text = |at: Pos2, align: Align2, text: String| {
+        ui.painter().text(at, align, text, egui::TextStyle::Small.resolve(ui.style()), palette.text);
+    };
+    text(bar.left_top() - vec2(0.0, theme::GRID), Align2::LEFT_BOTTOM, format!("{name} a ray"));
+    text(bar.left_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::LEFT_TOP, format::number(range.min.into()));
+    text(bar.right_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::RIGHT_TOP, format::number(range.max.into()));
+}
+
+/// Where the hands take the camera, if they do.
+fn hands(ui: &Ui, response: &Response, rect: Rect, state: &State) -> Option<Camera> {
+    state.model.as_ref()?;
+    let height = rect.height();
+    dragged(ui, response, state, height).or_else(|| wheel(ui, response, rect, state)).or_else(|| typed(ui, response, state, rect))
+}
+
+/// A drag is worked out from where it began, so that a slow frame loses none of it.
+fn dragged(ui: &Ui, response: &Response, state: &State, height: f32) -> Option<Camera> {
+    let id = response.id.with("camera at start of drag");
+    let total = response.total_drag_delta()?;
+    let start: Camera = ui.data_mut(|d| {
+        if response.drag_started() {
+            d.insert_temp(id, state.camera);
+        }
+        d.get_temp(id).unwrap_or(state.camera)
+    });
+    if total.length() < theme::CLICK_SLACK {
+        return None;
+    }
+    let shift = ui.input(|i| i.modifiers.shift);
+    let by = |button| response.dragged_by(button);
+    let delta = Vec2::new(total.x, total.y);
+    let orbit = |go: bool| go.then(|| navigation::orbit(&start, delta, height));
+    let pan = |go: bool| go.then(|| navigation::pan(&start, delta, height));
+    match state.settings.navigation {
+        Navigation::Standard => {
+            pan(by(PointerButton::Middle) || (by(PointerButton::Primary) && shift)).or_else(|| orbit(by(PointerButton::Primary)))
+        }
+        Navigation::Blender => pan(by(PointerButton::Middle) && shift).or_else(|| orbit(by(PointerButton::Middle))),
+    }
+}
+
+fn wheel(ui: &Ui, response: &Response, rect: Rect, state: &State) -> Option<Camera> {
+    let pointer = response.hover_pos()?;
+    let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+    let at = in_picture(rect, pointer);
+    let aspect = rect.width() / rect.height();
+    if pinch != 1.0 {
+        return Some(navigation::zoom_by(1.0 / pinch, &state.camera, at, aspect));
+    }
+    (scroll != 0.0).then(|| navigation::zoom(&state.camera, scroll, at, aspect))
+}
+
+/// A point of the window in the picture: (-1, -1) lower left, (1, 1) upper right.
+fn in_picture(rect: Rect, at: Pos2) -> Vec2 {
+    Vec2::new((at.x - rect.center().x) / rect.width(), (rect.center().y - at.y) / rect.height()) * 2.0
+}
+
+/// Arrows and plus and minus, while the viewport has the focus.
+fn typed(ui: &Ui, response: &Response, state: &State, rect: Rect) -> Option<Camera> {
+    if !response.has_focus() {
+        return None;
+    }
+    let lock = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+    ui.memory_mut(|m| m.set_focus_lock_filter(response.id, lock));
+    let pressed = |key| ui.input(|i| i.key_pressed(key));
+    let turns = [
+        (Key::ArrowLeft, Vec2::new(KEY_STEP, 0.0)),
+        (Key::ArrowRight, Vec2::new(-KEY_STEP, 0.0)),
+        (Key::ArrowUp, Vec2::new(0.0, KEY_STEP)),
+        (Key::ArrowDown, Vec2::new(0.0, -KEY_STEP)),
+    ];
+    if let Some((_, delta)) = turns.into_iter().find(|(key, _)| pressed(*key)) {
+        return Some(navigation::orbit(&state.camera, delta, rect.height()));
+    }
+    let aspect = rect.width() / rect.height();
+    let zoom = |scroll| navigation::zoom(&state.camera, scroll, Vec2::ZERO, aspect);
+    let plain = ui.input(|i| i.modifiers.is_none() || i.modifiers.shift_only());
+    let closer = pressed(Key::Plus) || pressed(Key::Equals);
+    (plain && closer).then(|| zoom(KEY_ZOOM)).or_else(|| (plain && pressed(Key::Minus)).then(|| zoom(-KEY_ZOOM)))
+}

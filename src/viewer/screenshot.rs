@@ -1,0 +1,98 @@
+//! Takes a picture of the window once everything in it is there, and closes it: how the pictures of
+//! the README are made.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use eframe::egui::{ColorImage, Context, ScreenshotCallback, ViewportCommand};
+
+use super::command::Command;
+use super::pace::Pace;
+use super::panels::Commands;
+use super::state::State;
+
+/// What is still to be done.
+#[derive(Debug)]
+pub struct Screenshot {
+    path: PathBuf,
+    measure: bool,
+    stage: Stage,
+    start: Instant,
+    /// The picture, once the window has it.
+    taken: Arc<Mutex<Option<Arc<ColorImage>>>>,
+}
+
+#[derive(Debug, PartialEq, Eq)]
+enum Stage {
+    /// Loading, building, tracing.
+    Settling,
+    /// Timing every structure.
+    Measuring,
+    /// Frames in which nothing is left to do; a few, so that the last one is on the screen.
+    Still(u32),
+    /// The window was asked for its picture.
+    Asked,
+    Done,
+}
+
+/// Frames without work before the picture is taken.
+const STILL_FRAMES: u32 = 4;
+/// A window that never comes to rest is shown as it is.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+impl Screenshot {
+    /// A picture for `path`, after measuring if `measure`.
+    pub fn new(path: PathBuf, measure: bool) -> Self {
+        Self { path, measure, stage: Stage::Settling, start: Instant::now(), taken: Arc::default() }
+    }
+
+    /// Looks whether it is time, once a frame.
+    pub fn advance(&mut self, ctx: &Context, state: &State, pace: &Pace, commands: &mut Commands) {
+        ctx.request_repaint_after(Duration::from_millis(20));
+        let settled = (!state.is_busy() && (state.shown.is_some() || state.error.is_some())) || self.start.elapsed() > PATIENCE;
+        match self.stage {
+            Stage::Settling if settled && self.measure => {
+                commands.push(Command::Measure);
+                self.stage = Stage::Measuring;
+            }
+            Stage::Measuring if settled && state.timings.view.is_some() => self.stage = Stage::Still(0),
+            Stage::Settling if settled && !self.measure => self.stage = Stage::Still(0),
+            Stage::Still(n) if n < STILL_FRAMES => self.stage = if settled { Stage::Still(n + 1) } else { Stage::Settling },
+            Stage::Still(_) => {
+                let taken = Arc::clone(&self.taken);
+                let callback =
+                    ScreenshotCallback::new(move |image| *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(image));
+                ctx.send_viewport_cmd(ViewportCommand::Screenshot(callback));
+                self.stage = Stage::Asked;
+            }
+            Stage::Asked => {
+                let image = self.taken.lock().unwrap_or_else(PoisonError::into_inner).take();
+                if let Some(image) = image {
+                    if let Err(why) = save(&self.path, &image) {
+                        eprintln!("boxwood: Can't write {}: {why}", self.path.display());
+                    }
+                    eprintln!("{}", pace.report(state));
+                    self.stage = Stage::Done;
+                    ctx.send_viewport_cmd(ViewportCommand::Close);
+                }
+            }
+            Stage::Settling | Stage::Measuring | Stage::Done => {}
+        }
+    }
+}
+
+/// Writes a PNG to a temporary file, then renames it.
+fn save(path: &Path, image: &ColorImage) -> std::io::Result<()> {
+    let bytes: Vec<u8> = image.pixels.iter().flat_map(|p| [p.r(), p.g(), p.b()]).collect();
+    let [width, height] = image.size.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    let encoder = image::codecs::png::PngEncoder::new(std::io::BufWriter::new(&mut file));
+    image::ImageEncoder::write_image(encoder, &bytes, width, height, image::ExtendedColorType::Rgb8)
+        .map_err(std::io::Error::other)?;
+    file.flush()?;
+    file.persist(path)?;
+    Ok(())
+}

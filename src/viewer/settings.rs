@@ -1,0 +1,168 @@
+//! What the window remembers from one day to the next.
+
+use std::collections::BTreeMap;
+
+use crate::accel::params::ParamValues;
+use crate::accel::registry::{self, Entry};
+use crate::geometry::tri::TestKind;
+use crate::render::Mode;
+
+/// Everything that is saved.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Files opened, the last first.
+    pub recent: Vec<String>,
+    /// The structure's id.
+    pub structure: String,
+    /// Parameters that differ from their defaults, by structure and parameter.
+    pub params: BTreeMap<String, BTreeMap<String, String>>,
+    /// The triangle test.
+    pub test: TestKind,
+    /// What is shown.
+    pub mode: Mode,
+    /// Samples after which to rest.
+    pub max_samples: u32,
+    /// Boxes and planes.
+    pub overlay: OverlaySettings,
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// Which button does what.
+    pub navigation: Navigation,
+    /// How much everything is enlarged.
+    pub scale: f32,
+}
+
+/// The most files in the list of recent ones.
+const RECENT: usize = 8;
+/// The limits of [`Settings::scale`].
+pub const SCALE: std::ops::RangeInclusive<f32> = 0.75..=2.0;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            recent: Vec::new(),
+            structure: "bvh".to_owned(),
+            params: BTreeMap::new(),
+            test: TestKind::default(),
+            mode: Mode::default(),
+            max_samples: 4096,
+            overlay: OverlaySettings::default(),
+            theme: ThemeChoice::default(),
+            navigation: Navigation::default(),
+            scale: 1.0,
+        }
+    }
+}
+
+/// Which boxes and planes are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct OverlaySettings {
+    /// Boxes of nodes and cells.
+    pub boxes: bool,
+    /// Only those of leaves.
+    pub leaves_only: bool,
+    /// Planes that divide cells.
+    pub planes: bool,
+    /// Grid cells without triangles.
+    pub empty_cells: bool,
+    /// The depth shown, or the deepest of a range.
+    pub depth: u32,
+    /// Shows also the levels above, from this one on; equal to `depth` for one level.
+    pub from_depth: u32,
+    /// Of a grid: one layer of cells along `slice_axis`, from 1; 0 for all.
+    pub slice: u32,
+    /// 0, 1 or 2 for x, y or z.
+    pub slice_axis: usize,
+    /// Lines behind the surface.
+    pub hidden_lines: bool,
+}
+
+impl Default for OverlaySettings {
+    fn default() -> Self {
+        Self {
+            boxes: true,
+            leaves_only: false,
+            planes: true,
+            empty_cells: false,
+            depth: 3,
+            from_depth: 3,
+            slice: 0,
+            slice_axis: 2,
+            hidden_lines: true,
+        }
+    }
+}
+
+/// Light, dark, or as the system has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum ThemeChoice {
+    /// As the system has it.
+    #[default]
+    System,
+    /// Dark text on light.
+    Light,
+    /// Light text on dark.
+    Dark,
+}
+
+/// Which button does what in the viewport.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Navigation {
+    /// Left orbits, middle or Shift+left pans.
+    #[default]
+    Standard,
+    /// Middle orbits, Shift+middle pans.
+    Blender,
+}
+
+impl Settings {
+    /// The structure, the first of all if the name is not known any more.
+    pub fn entry(&self) -> &'static Entry {
+        registry::find(&self.structure).unwrap_or(&registry::ALL[0])
+    }
+
+    /// The parameters of a structure: the defaults, changed by what was set and still fits.
+    pub fn params_of(&self, entry: &Entry) -> ParamValues {
+        let mut values = entry.defaults();
+        for (id, text) in self.params.get(entry.id).into_iter().flatten() {
+            let _ = values.set(id, text); // a value from another version that no longer fits is forgotten
+        }
+        values
+    }
+
+    /// Remembers the parameters of a structure, as far as they differ from the defaults.
+    pub fn remember(&mut self, entry: &Entry, values: &ParamValues) {
+        let set = values.iter().filter(|(p, v)| p.default() != *v).map(|(p, v)| (p.id.to_owned(), v.to_string())).collect();
+        self.params.insert(entry.id.to_owned(), set);
+    }
+
+    /// Puts a model at the head of the recent ones.
+    pub fn opened(&mut self, model: &str) {
+        self.recent.retain(|m| m != model);
+        self.recent.insert(0, model.to_owned());
+        self.recent.truncate(RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_are_remembered_by_structure() {
+        let mut settings = Settings::default();
+        let entry = settings.entry();
+        let mut values = entry.defaults();
+        values.set("max_leaf", "7").expect("in range");
+        settings.remember(entry, &values);
+        let saved = serde_json::to_string(&settings).expect("plain data");
+        let loaded: Settings = serde_json::from_str(&saved).expect("just written");
+        assert_eq!(loaded.params_of(entry), values);
+        let odd: Settings =
+            serde_json::from_str(r#"{"structure": "gone", "params": {"brute": {"x": "1"}}}"#).expect("fields default");
+        assert_eq!(odd.entry().id, "brute");
+        assert_eq!(odd.params_of(odd.entry()), odd.entry().defaults());
+    }
+}

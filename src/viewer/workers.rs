@@ -1,0 +1,150 @@
+//! The long work of the window, each piece a background job: loading, building, statistics,
+//! overlays, measuring. At most one of each runs.
+
+use std::sync::Arc;
+
+use super::kept::{Built, Key};
+use super::model::{self, Model};
+use super::overlay::{self, Collected, Wanted};
+use super::pick::{self, Picked};
+use crate::accel::stats::{SahWeights, Stats};
+use crate::accel::{Accel, BuildCx, BuildError};
+use crate::geometry::Ray;
+use crate::job::Job;
+use crate::lab::{Contestant, MeasureOptions, RayKind, RaySet, Timing, measure};
+use crate::render;
+use crate::scene::{Geometry, LoadError, Scene};
+use crate::task::{Budget, Cancelled, Pool};
+
+/// What every job needs: threads, memory, and a way to wake the window.
+#[derive(Clone)]
+pub struct Shared {
+    /// For loading, building and measuring.
+    pub pool: Pool,
+    /// For everything that is large.
+    pub budget: Budget,
+    /// Makes the window draw a frame.
+    pub wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl Shared {
+    fn waker(&self) -> impl FnOnce() + Send + 'static + use<> {
+        let wake = Arc::clone(&self.wake);
+        move || wake()
+    }
+}
+
+/// A model on its way.
+pub type Loading = Job<Result<Model, LoadError>>;
+
+/// Starts loading.
+pub fn load(shared: &Shared, model: String, generation: u64) -> std::io::Result<Loading> {
+    let Shared { pool, budget, .. } = shared.clone();
+    Job::spawn("load", shared.waker(), move |cancel, progress| model::load(&model, generation, &budget, &pool, cancel, progress))
+}
+
+/// A structure on its way.
+pub struct Building {
+    /// Which one.
+    pub key: Key,
+    /// The work.
+    pub job: Job<Result<Built, BuildError>>,
+}
+
+/// Starts a build.
+pub fn build(shared: &Shared, key: Key, geometry: Arc<Geometry>) -> std::io::Result<Building> {
+    let (Shared { pool, budget, .. }, wanted) = (shared.clone(), key.clone());
+    let job = Job::spawn("build", shared.waker(), move |cancel, progress| {
+        let cx = BuildCx { cancel: cancel.clone(), progress: progress.clone(), pool, budget };
+        build_now(wanted, &geometry, &cx)
+    })?;
+    Ok(Building { key, job })
+}
+
+/// Builds here and now.
+fn build_now(key: Key, geometry: &Arc<Geometry>, cx: &BuildCx) -> Result<Built, BuildError> {
+    let start = std::time::Instant::now();
+    let accel: Arc<dyn Accel> = Arc::from(key.entry.build(geometry, key.test, &key.params, cx)?);
+    let build_secs = start.elapsed().as_secs_f64();
+    Ok(Built { key, accel, build_secs, phases: cx.progress.finish(), stats: None })
+}
+
+/// Figures on their way, and of what.
+pub type Counting = (Key, Job<Result<Stats, Cancelled>>);
+
+/// Starts working out the figures of a structure.
+pub fn count(shared: &Shared, built: &Built) -> std::io::Result<Counting> {
+    let accel = Arc::clone(&built.accel);
+    let job =
+        Job::spawn("statistics", shared.waker(), move |cancel, _| Stats::of(accel.as_ref(), SahWeights::default(), cancel))?;
+    Ok((built.key.clone(), job))
+}
+
+/// An overlay on its way.
+pub type Collecting = Job<Result<Collected, Cancelled>>;
+
+/// Starts collecting the boxes of a view.
+pub fn collect(shared: &Shared, accel: Arc<dyn Accel>, wanted: Wanted) -> std::io::Result<Collecting> {
+    Job::spawn("overlay", shared.waker(), move |cancel, _| overlay::collect(accel.as_ref(), &wanted, cancel))
+}
+
+/// What was clicked, on its way.
+pub type Picking = Job<Option<Picked>>;
+
+/// Starts looking what is under a click: a ray through a structure that is none can take long.
+pub fn pick(shared: &Shared, scene: Arc<Scene>, accel: Arc<dyn Accel>, ray: Ray) -> std::io::Result<Picking> {
+    Job::spawn("pick", shared.waker(), move |_, _| pick::pick(&scene, accel.as_ref(), &ray))
+}
+
+/// What measuring brings: every structure that could be built, its figures, and why others have
+/// none.
+#[derive(Debug, Default)]
+pub struct Measured {
+    /// Structures, the ones built for it among them.
+    pub built: Vec<Built>,
+    /// Their timings, in the same order.
+    pub timings: Vec<Timing>,
+    /// Structures that could not be built, and why.
+    pub failed: Vec<(&'static str, String)>,
+}
+
+/// Timings on their way.
+pub type Measuring = Job<Result<Measured, Cancelled>>;
+
+/// What is measured: the structures that are there and those to be built, on the rays of a view.
+pub struct Plan {
+    /// Structures that are kept.
+    pub kept: Vec<Built>,
+    /// Structures to build first.
+    pub missing: Vec<Key>,
+    /// The view; its structure finds the first hits.
+    pub view: render::Job,
+    /// Its size in pixels.
+    pub size_px: [u32; 2],
+    /// Keeps the renderer from running meanwhile.
+    pub pause: render::progressive::Pause,
+}
+
+/// Starts measuring.
+pub fn measure_all(shared: &Shared, plan: Plan) -> std::io::Result<Measuring> {
+    let Shared { pool, budget, .. } = shared.clone();
+    Job::spawn("measure", shared.waker(), move |cancel, progress| {
+        plan.pause.wait();
+        let mut measured = Measured { built: plan.kept, ..Measured::default() };
+        for key in plan.missing {
+            let id = key.entry.id;
+            let cx = BuildCx { cancel: cancel.clone(), progress: progress.clone(), pool: pool.clone(), budget: budget.clone() };
+            match build_now(key, plan.view.accel.geometry(), &cx) {
+                Ok(built) => measured.built.push(built),
+                Err(BuildError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(why) => measured.failed.push((id, why.to_string())),
+            }
+        }
+        let [width, height] = plan.size_px;
+        let rays = RaySet::generate(RayKind::Primary, &plan.view, width, height, &pool, cancel)?;
+        let contestant = |b: &Built| Contestant { id: b.key.entry.id.to_owned(), accel: Arc::clone(&b.accel) };
+        let contestants: Vec<Contestant> = measured.built.iter().map(contestant).collect();
+        measured.timings = measure(&contestants, &rays, &MeasureOptions::default(), &pool, cancel, progress)?;
+        Ok(measured)
+    })
+}
