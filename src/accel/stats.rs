@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::cell::{Cells, Descend, Layout, MemoryPart, walk};
+use super::params::{C_ISECT, C_TRAV, Param, ParamValues, Value};
 use crate::task::{Cancel, Cancelled};
 
 /// The weights of the surface area heuristic.
@@ -17,6 +18,18 @@ pub struct SahWeights {
 impl Default for SahWeights {
     fn default() -> Self {
         Self { c_trav: 1.0, c_isect: 1.0 }
+    }
+}
+
+impl SahWeights {
+    /// The weights that a structure was built with, so that its SAH cost is stated in them; 1 where
+    /// it has none.
+    pub fn of(params: &ParamValues) -> Self {
+        let weight = |of: &Param| match params.iter().find(|(param, _)| param.id == of.id) {
+            Some((_, Value::Float(weight))) => weight,
+            _ => 1.0,
+        };
+        Self { c_trav: weight(&C_TRAV), c_isect: weight(&C_ISECT) }
     }
 }
 

@@ -6,6 +6,7 @@ use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
+use crate::sys::{folder_of, temporary_in};
 use crate::task::Cancel;
 
 /// Writes to standard output.
@@ -42,7 +43,7 @@ impl OutFile {
             return wrong("it is a folder");
         }
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        if !folder(&target).is_dir() {
+        if !folder_of(&target).is_dir() {
             return wrong("there is no such folder");
         }
         Ok(Self { path: path.to_owned(), target })
@@ -54,8 +55,8 @@ impl OutFile {
         let cannot = |error: io::Error| Failure::of_output(&self.path, &error);
         // Renaming onto a device or a pipe would replace it.
         let special = fs::metadata(&self.target).is_ok_and(|found| !found.is_file());
-        let beside = if special { std::env::temp_dir() } else { folder(&self.target).to_owned() };
-        let mut temp = temporary(&beside).map_err(cannot)?;
+        let beside = if special { std::env::temp_dir() } else { folder_of(&self.target).to_owned() };
+        let mut temp = temporary_in(&beside).map_err(cannot)?;
         let mut out = BufWriter::new(temp.as_file_mut());
         fill(&mut out).and_then(|()| out.flush()).map_err(cannot)?;
         drop(out);
@@ -65,19 +66,6 @@ impl OutFile {
         }
         temp.persist(&self.target).map(drop).map_err(|error| cannot(error.error))
     }
-}
-
-fn folder(path: &Path) -> &Path {
-    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// A temporary file with the rights of any other new file.
-fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".boxwood-").suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
 }
 
 fn pour(from: &mut File, to: &Path) -> io::Result<()> {

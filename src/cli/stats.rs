@@ -4,12 +4,12 @@ use super::args::ModelArgs;
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
-use super::structures::{BuildArgs, Many, sah_weights};
+use super::structures::{BuildArgs, Many};
 use super::table::{Table, facts};
 use crate::accel::BuildError;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::Entry;
-use crate::accel::stats::Stats;
+use crate::accel::stats::{SahWeights, Stats};
 use crate::geometry::num::floor_index;
 use crate::lab::format::{MISSING, bytes, count, duration, number};
 use crate::lab::{BuiltFacts, BuiltRow, Report, StructureRow};
@@ -63,7 +63,7 @@ pub fn row(
     let mut row = StructureRow::new(entry.id, params, build.test);
     match cx.build(entry, model, build.test, params) {
         Ok(built) => {
-            let stats = Stats::of(built.accel.as_ref(), sah_weights(entry, params), &cx.cancel)?;
+            let stats = Stats::of(built.accel.as_ref(), SahWeights::of(params), &cx.cancel)?;
             row.built = Some(BuiltFacts::of(&built, stats));
             Ok((row, Some(built)))
         }

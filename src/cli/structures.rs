@@ -5,7 +5,6 @@ use std::str::FromStr;
 use super::failure::Failure;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
-use crate::accel::stats::SahWeights;
 use crate::geometry::tri::TestKind;
 
 /// How structures are built.
@@ -89,13 +88,6 @@ impl BuildArgs {
         }
         Ok(all)
     }
-}
-
-/// The weights that a structure was built with, so that its SAH cost is stated in them.
-pub fn sah_weights(entry: &Entry, params: &ParamValues) -> SahWeights {
-    let defaults = SahWeights::default();
-    let weight = |id, default| if entry.params.iter().any(|param| param.id == id) { params.float(id) } else { default };
-    SahWeights { c_trav: weight("c_trav", defaults.c_trav), c_isect: weight("c_isect", defaults.c_isect) }
 }
 
 #[cfg(test)]

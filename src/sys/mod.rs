@@ -1,4 +1,6 @@
-//! What the machine is: its memory and its processor. System calls live here and nowhere else.
+//! What the machine is: its memory, its processor, its files. System calls live here and nowhere else.
+
+use std::path::Path;
 
 /// Bytes of memory that this process may count on: the machine's, or the container's where that
 /// is smaller. 4 GiB where neither can be read.
@@ -25,4 +27,22 @@ pub fn cpu_name() -> String {
 /// The number of cores this process may use.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// The folder that a file is in.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A temporary file with the rights of any other new file, to be renamed once it is complete: so that
+/// neither Ctrl-C nor a full disk leaves half a file.
+///
+/// # Errors
+/// If the folder cannot be written to.
+pub fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".boxwood-").suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
 }

@@ -12,6 +12,7 @@ use super::command::Command;
 use super::pace::Pace;
 use super::panels::Commands;
 use super::state::State;
+use crate::sys::{folder_of, temporary_in};
 
 /// What is still to be done.
 #[derive(Debug)]
@@ -87,8 +88,7 @@ impl Screenshot {
 fn save(path: &Path, image: &ColorImage) -> std::io::Result<()> {
     let bytes: Vec<u8> = image.pixels.iter().flat_map(|p| [p.r(), p.g(), p.b()]).collect();
     let [width, height] = image.size.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    let mut file = temporary_in(folder_of(path))?;
     let encoder = image::codecs::png::PngEncoder::new(std::io::BufWriter::new(&mut file));
     image::ImageEncoder::write_image(encoder, &bytes, width, height, image::ExtendedColorType::Rgb8)
         .map_err(std::io::Error::other)?;

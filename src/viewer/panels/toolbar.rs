@@ -9,10 +9,12 @@ use crate::geometry::Axis;
 use crate::render::Mode;
 use crate::viewer::command::Command;
 use crate::viewer::state::State;
+use crate::viewer::theme;
 
 /// Draws the row.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = theme::SHORT_SLIDER;
         ui.add_enabled_ui(!state.is_measuring(), |ui| structure(ui, state, commands));
         mode(ui, state, commands);
         depth(ui, state, commands);

@@ -102,7 +102,8 @@ fn captions(ui: &mut Ui, rect: Rect, state: &State) {
         );
         return;
     }
-    if state.shown.is_some() {
+    let overlay = &state.settings.overlay;
+    if state.shown.is_some() && (overlay.boxes || overlay.planes) {
         caption(ui, inner.left_bottom(), Align2::LEFT_BOTTOM, &showing(state));
     }
     if let Some(picked) = &state.picked {
