@@ -1,7 +1,8 @@
 //! Colours for amounts.
 
-/// Viridis (van der Walt and Smith 2015, CC0) at `t` in 0 to 1, as gamma-encoded red, green, blue:
-/// a polynomial of sixth degree fitted to the published table, within 0.006 of it.
+/// Viridis (Stéfan van der Walt and Nathaniel Smith for matplotlib, CC0) at `t` in 0 to 1, as
+/// gamma-encoded red, green, blue. The polynomial is Matt Zucker's fit to its table (2019, CC0), off
+/// by at most 5/255.
 pub fn viridis(t: f32) -> [f32; 3] {
     const COEFFICIENTS: [[f32; 3]; 7] = [
         [0.277_727_33, 0.005_407_344_5, 0.334_099_8],

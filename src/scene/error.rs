@@ -7,13 +7,21 @@ use crate::task::{Cancelled, OverBudget};
 
 /// A model that could not be opened.
 #[derive(Debug, thiserror::Error)]
-#[error("Can't open {}: {reason}", .model)]
+#[error("Can't open {model}: {}", told(model, reason))]
 pub struct LoadError {
     /// The model as the user named it.
     pub model: String,
     /// What, where and why.
     #[source]
     pub reason: Reason,
+}
+
+/// The reason; a file that is the model itself is not named twice.
+fn told(model: &str, reason: &Reason) -> String {
+    match reason {
+        Reason::Io { path, error } if path.as_os_str() == model => error.to_string(),
+        _ => reason.to_string(),
+    }
 }
 
 /// What is wrong with the model, and where.

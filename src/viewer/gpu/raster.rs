@@ -13,8 +13,8 @@ use super::layouts::Layouts;
 use super::pipeline::{Pass, Recipe};
 use crate::scene::Geometry;
 
-/// The most bytes that go to the GPU in one frame: a few milliseconds of work.
-const BYTES_PER_FRAME: usize = 4 << 20;
+/// The most bytes that go to the GPU in one frame: about a millisecond of work, more in software.
+const BYTES_PER_FRAME: usize = 1 << 20;
 
 /// A scene to be rasterised. Made once a scene, and shared by all viewports.
 #[derive(Debug)]

@@ -4,23 +4,7 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::Color32;
 
-/// The colour of `t` in 0..=1, gamma-encoded.
-///
-/// Viridis is by Stéfan van der Walt and Nathaniel Smith for matplotlib, CC0. The polynomial is Matt
-/// Zucker's fit to its table (2019, CC0), off by at most 5/255.
-pub fn viridis(t: f32) -> [f32; 3] {
-    const C: [[f32; 3]; 7] = [
-        [0.277_727_33, 0.005_407_345, 0.334_099_8],
-        [0.105_093_04, 1.404_613_5, 1.384_590_1],
-        [-0.330_861_83, 0.214_847_56, 0.095_095_165],
-        [-4.634_230_5, -5.799_101, -19.332_44],
-        [6.228_27, 14.179_934, 56.690_55],
-        [4.776_385, -13.745_145, -65.353_035],
-        [-5.435_456, 4.645_852_6, 26.312_435],
-    ];
-    let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
-    std::array::from_fn(|k| C.iter().rev().fold(0.0, |sum, c| sum * t + c[k]).clamp(0.0, 1.0))
-}
+pub use crate::render::colormap::viridis;
 
 /// Where a level lies on viridis: from 0.35 (the darkest that lines can be told on the dark
 /// background) to 1 over the levels that are shown, one even step a level.
