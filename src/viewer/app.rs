@@ -141,6 +141,7 @@ impl App {
                     panels::statistics::show(ui, state, commands);
                 })
                 .response
+                .accessible_name("Statistics")
                 .on_hover_text("Statistics");
             });
         }
@@ -179,7 +180,7 @@ fn error(ui: &mut Ui, state: &State, commands: &mut Commands) {
                     commands.push(Command::Dismiss);
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    ui.add(egui::Label::new(RichText::new(format!("✖ {error}")).color(palette.fail)).wrap());
+                    ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(palette.fail)).wrap());
                 });
             });
         });
