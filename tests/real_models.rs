@@ -1,6 +1,8 @@
 //! Every model of a folder beside the package, where there is one: it loads with the right number
 //! of triangles, or is refused for the right reason, and other readers find the same triangles.
 
+mod common;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -134,9 +136,8 @@ fn attempt(model: &Model, cx: &LoadCx) -> Result<String, String> {
 #[test]
 fn real_models() {
     let Some(models) = listed(&folder()) else {
-        let note = format!("LEFT OUT: no real models were loaded, for {} has no MANIFEST.tsv", folder().display());
-        println!("{note}");
-        eprintln!("{note}");
+        let remedy = format!("Put some into {} with a list of them, MANIFEST.tsv, to run it.", folder().display());
+        common::left_out("model files", "loading real models", &remedy);
         return;
     };
     let cx = LoadCx::unattended();

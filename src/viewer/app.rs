@@ -23,6 +23,9 @@ const SETTINGS: &str = "settings";
 /// What opens when nothing else was asked for.
 const FIRST_SCENE: &str = "builtin:lecture";
 
+/// The most boxes that are collected where nothing can draw them.
+const BOXES_UNSEEN: usize = 1000;
+
 /// The program's window.
 pub struct App {
     state: State,
@@ -52,7 +55,9 @@ impl App {
         dialog: Box<dyn FileDialog>,
     ) -> std::io::Result<Self> {
         theme::apply(&cc.egui_ctx);
-        let box_limit = cc.wgpu_render_state.as_ref().map_or(0, |render_state| {
+        // The enlargement is a setting of ours, under the same keys.
+        cc.egui_ctx.options_mut(|o| o.zoom_with_keyboard = false);
+        let box_limit = cc.wgpu_render_state.as_ref().map_or(BOXES_UNSEEN, |render_state| {
             gpu::install(render_state);
             gpu::comfortable_boxes(render_state)
         });
@@ -136,6 +141,7 @@ impl App {
                     panels::statistics::show(ui, state, commands);
                 })
                 .response
+                .accessible_name("Statistics")
                 .on_hover_text("Statistics");
             });
         }
@@ -174,7 +180,7 @@ fn error(ui: &mut Ui, state: &State, commands: &mut Commands) {
                     commands.push(Command::Dismiss);
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    ui.add(egui::Label::new(RichText::new(format!("✖ {error}")).color(palette.fail)).wrap());
+                    ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(palette.fail)).wrap());
                 });
             });
         });

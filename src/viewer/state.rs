@@ -58,6 +58,8 @@ pub struct State {
     pub asking: Option<String>,
     /// The page of keys is open.
     pub help: bool,
+    /// The first and the last depth that were chosen, whether or not the shown structure is as deep.
+    chosen_depths: (u32, u32),
     /// The viewport in pixels, as it was last drawn.
     pub size_px: [u32; 2],
     /// The most boxes that this machine draws fluently; few where the graphics are in software.
@@ -107,6 +109,7 @@ impl State {
         let pool = Pool::new("trace", crate::sys::cores().saturating_sub(1).max(1));
         let renderer = Renderer::new(pool, move || wake())?;
         Ok(Self {
+            chosen_depths: (settings.overlay.from_depth, settings.overlay.depth),
             settings,
             model: None,
             shown: None,
@@ -196,7 +199,13 @@ impl State {
                 self.range = None;
             }
             Command::HeatRange(range) => self.range = range,
-            Command::Overlay(overlay) => self.settings.overlay = overlay,
+            Command::Overlay(overlay) => {
+                let depths = (overlay.from_depth, overlay.depth);
+                if depths != (self.settings.overlay.from_depth, self.settings.overlay.depth) {
+                    self.chosen_depths = depths;
+                }
+                self.settings.overlay = overlay;
+            }
             Command::Camera(camera) => self.camera = camera,
             Command::Pick(at) => self.pick(at),
             Command::FrameAll => self.frame_all(),
@@ -261,8 +270,12 @@ impl State {
             self.building = None;
             return;
         }
+        if self.building.as_ref().is_some_and(|b| b.key == key) {
+            return;
+        }
         if let Some(built) = self.kept.take_up(&key) {
             self.building = None;
+            self.timings.built(&built);
             self.show(built);
             return;
         }
@@ -285,8 +298,7 @@ impl State {
     }
 
     fn show(&mut self, built: Built) {
-        let counted = self.picture.as_ref().map(|p| p.progress).filter(|p| p.counted > 0);
-        self.before = self.shown.as_ref().zip(counted).map(|(b, p)| (b.key.entry.name, p.counts.nodes as f64 / p.counted as f64));
+        self.before = self.nodes_per_ray();
         self.change = None;
         if built.stats.is_none() {
             self.counting = workers::count(&self.shared, &built).ok();
@@ -297,11 +309,13 @@ impl State {
         self.clamp_depth();
     }
 
+    /// The chosen depths come back with a structure that has them.
     fn clamp_depth(&mut self) {
         if let Some(stats) = self.shown.as_ref().and_then(|b| b.stats.as_ref()) {
             let overlay = &mut self.settings.overlay;
-            overlay.depth = overlay.depth.min(stats.max_depth);
-            overlay.from_depth = overlay.from_depth.min(overlay.depth);
+            let (from_depth, depth) = self.chosen_depths;
+            overlay.depth = depth.min(stats.max_depth);
+            overlay.from_depth = from_depth.min(overlay.depth);
         }
     }
 
@@ -360,6 +374,9 @@ impl State {
 
     fn advance_load(&mut self) {
         let Some((name, job)) = &self.loading else { return };
+        if self.size_px == [0, 0] {
+            return; // the first view is made for the viewport, and the first frame says how large it is
+        }
         let name = name.clone();
         match job.poll() {
             Outcome::Running => return,
@@ -441,7 +458,7 @@ impl State {
                 if let Some(shown) = &self.shown {
                     let _ = self.kept.take_up(&shown.key);
                 }
-                self.timings.measured(&measured, self.camera, self.size_px);
+                self.timings.measured(&measured);
             }
             Outcome::Done(Err(_)) => {}
             Outcome::Died => self.fail("Can't measure: the measurement failed.".to_owned()),
@@ -475,6 +492,14 @@ impl State {
             self.say_what_changed(&picture);
             self.picture = Some(picture);
         }
+    }
+
+    /// The structure on the screen, and what a ray visits in it, if its picture is there.
+    fn nodes_per_ray(&self) -> Option<(&'static str, f64)> {
+        let (shown, asked, picture) = (self.shown.as_ref()?, self.requested.as_ref()?, self.picture.as_ref()?);
+        let counted = picture.progress.counted;
+        let its = asked.key == shown.key && asked.number == picture.request && counted > 0;
+        its.then(|| (shown.key.entry.name, picture.progress.counts.nodes as f64 / counted as f64))
     }
 
     /// `k-d tree: 38.1 nodes/ray (BVH: 21.4)`, since the pictures are equal.

@@ -47,8 +47,8 @@ pub const LEAST_WINDOW: Vec2 = Vec2::new(960.0, 600.0);
 pub const CLICK_SLACK: f32 = 4.0;
 /// The width of the strip that the right panel folds to.
 pub const STRIP: f32 = 40.0;
-/// The length of a slider in a row of many things.
-pub const SHORT_SLIDER: f32 = 20.0 * GRID;
+/// The width of a slider where many things stand in a row.
+pub const SHORT_SLIDER: f32 = 12.0 * GRID;
 /// The size of a structure's mark.
 pub const MARK: f32 = 9.0;
 /// How often progress bars move.

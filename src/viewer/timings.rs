@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::kept::Built;
+use super::kept::{Built, Key};
 use super::workers::Measured;
 use crate::accel::registry::{self, Entry};
 use crate::lab::{Timing, is_tie};
@@ -19,6 +19,8 @@ pub struct Timings {
 /// What is known of one structure.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
+    /// What it was built from.
+    pub key: Option<Key>,
     /// Seconds of its build.
     pub build_secs: Option<f64>,
     /// Bytes of its own.
@@ -30,17 +32,20 @@ pub struct Row {
 }
 
 impl Timings {
-    /// Takes in a build.
+    /// Takes in a structure that was built, or that is shown again.
     pub fn built(&mut self, built: &Built) {
         let row = self.rows.entry(built.key.entry.id).or_default();
+        if row.key.as_ref() != Some(&built.key) {
+            *row = Row::default(); // of another structure of that name
+        }
+        row.key = Some(built.key.clone());
         row.build_secs = Some(built.build_secs);
         row.bytes = Some(built.accel.memory().iter().map(|part| part.bytes).sum());
-        row.timing = None; // of another structure of that name
         row.failed = None;
     }
 
     /// Takes in a measurement.
-    pub fn measured(&mut self, measured: &Measured, camera: Camera, size_px: [u32; 2]) {
+    pub fn measured(&mut self, measured: &Measured) {
         for (built, timing) in measured.built.iter().zip(&measured.timings) {
             self.built(built);
             self.rows.entry(built.key.entry.id).or_default().timing = Some(timing.clone());
@@ -48,7 +53,7 @@ impl Timings {
         for (id, why) in &measured.failed {
             self.rows.insert(id, Row { failed: Some(why.clone()), ..Row::default() });
         }
-        self.view = Some((camera, size_px));
+        self.view = measured.view;
     }
 
     /// Every registered structure with what is known of it.

@@ -13,7 +13,7 @@ use crate::geometry::Ray;
 use crate::job::Job;
 use crate::lab::{Contestant, MeasureOptions, RayKind, RaySet, Timing, measure};
 use crate::render;
-use crate::scene::{Geometry, LoadError, Scene};
+use crate::scene::{Camera, Geometry, LoadError, Scene};
 use crate::task::{Budget, Cancelled, Pool};
 
 /// What every job needs: threads, memory, and a way to wake the window.
@@ -106,6 +106,8 @@ pub struct Measured {
     pub timings: Vec<Timing>,
     /// Structures that could not be built, and why.
     pub failed: Vec<(&'static str, String)>,
+    /// The view, and its size in pixels.
+    pub view: Option<(Camera, [u32; 2])>,
 }
 
 /// Timings on their way.
@@ -130,7 +132,8 @@ pub fn measure_all(shared: &Shared, plan: Plan) -> std::io::Result<Measuring> {
     let Shared { pool, budget, .. } = shared.clone();
     Job::spawn("measure", shared.waker(), move |cancel, progress| {
         plan.pause.wait();
-        let mut measured = Measured { built: plan.kept, ..Measured::default() };
+        let view = Some((plan.view.camera, plan.size_px));
+        let mut measured = Measured { built: plan.kept, view, ..Measured::default() };
         for key in plan.missing {
             let id = key.entry.id;
             let cx = BuildCx { cancel: cancel.clone(), progress: progress.clone(), pool: pool.clone(), budget: budget.clone() };

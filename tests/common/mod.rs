@@ -3,6 +3,7 @@
 
 pub mod tiny;
 
+use std::io::Write;
 use std::sync::Arc;
 
 use boxwood::accel::registry::Entry;
@@ -130,4 +131,21 @@ pub fn meet_in_f64(ray: &Ray, tri: &[Vec3; 3]) -> Option<(f64, f64)> {
     let q = d.cross(s);
     let (u, v) = (-e2.dot(q) / det, e1.dot(q) / det);
     Some((t, u.min(v).min(1.0 - u - v)))
+}
+
+/// Says that a check was left out, and what it takes. Straight to standard error: what tests print is
+/// kept back when they pass.
+pub fn left_out(want: &str, check: &str, remedy: &str) {
+    let _ = writeln!(std::io::stderr(), "LEFT OUT for want of {want}: {check}. {remedy}");
+}
+
+/// Whether there is something that draws, be it a program; says so if there is not.
+#[cfg(feature = "viewer")]
+pub fn has_gpu(check: &str) -> bool {
+    let instance = pollster::block_on(egui_kittest::wgpu::default_wgpu_setup().new_instance());
+    let adapter = pollster::block_on(instance.request_adapter(&eframe::wgpu::RequestAdapterOptions::default()));
+    if adapter.is_err() {
+        left_out("a GPU driver", check, "Install mesa-vulkan-drivers libvulkan1 to run it.");
+    }
+    adapter.is_ok()
 }

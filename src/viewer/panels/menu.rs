@@ -22,6 +22,8 @@ pub const PROJECTION: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, 
 pub const FULL_SCREEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F11);
 /// Larger, smaller, as the system has it.
 pub const LARGER: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Plus);
+/// The same key where plus needs Shift.
+const LARGER_UNSHIFTED: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Equals);
 /// Smaller.
 pub const SMALLER: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Minus);
 /// The system's size.
@@ -45,7 +47,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
 
 /// Does what was typed, unless a text field has the focus.
 pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
-    let typing = ctx.egui_wants_keyboard_input();
+    let typing = ctx.text_edit_focused();
     let mut on = |shortcut: &KeyboardShortcut, command: Command| {
         if (!typing || shortcut.modifiers.command) && ctx.input_mut(|i| i.consume_shortcut(shortcut)) {
             commands.push(command);
@@ -59,6 +61,7 @@ pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
     on(&PROJECTION, Command::ToggleProjection);
     on(&FULL_SCREEN, Command::FullScreen);
     on(&LARGER, Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
+    on(&LARGER_UNSHIFTED, Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
     on(&SMALLER, Command::Scale((scale - SCALE_STEP).max(*SCALE.start())));
     on(&SAME_SIZE, Command::Scale(1.0));
     on(&KeyboardShortcut::new(Modifiers::SHIFT, Key::Questionmark), Command::Help(!state.help));
@@ -76,7 +79,9 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.loading.is_some(), Command::CancelLoad),
         (state.error.is_some(), Command::Dismiss),
     ];
-    if let Some((_, command)) = innermost.into_iter().find(|(on, _)| *on)
+    // An open menu or list is further in than all of these, and closes itself.
+    if !egui::Popup::is_any_open(ctx)
+        && let Some((_, command)) = innermost.into_iter().find(|(on, _)| *on)
         && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape))
     {
         commands.push(command);

@@ -8,16 +8,19 @@ use crate::viewer::state::State;
 
 /// Draws the field, if it is open. What is being typed stays here, under the field's own name.
 pub fn show(ui: &Ui, state: &State, commands: &mut Commands) {
+    let id = ui.scope_id().with("path");
     if state.asking.is_none() {
+        ui.data_mut(|d| d.remove::<String>(id));
         return;
     }
-    let id = ui.scope_id().with("path");
     let modal = Modal::new(id).show(ui.ctx(), |ui| {
         ui.heading("Open a path");
-        let mut text: String = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+        let typed: Option<String> = ui.data(|d| d.get_temp(id));
+        let just_opened = typed.is_none();
+        let mut text = typed.unwrap_or_default();
         let label = ui.label("A file, or a built-in scene such as builtin:terrain?triangles=1000000");
         let field = ui.add(TextEdit::singleline(&mut text).hint_text("path").desired_width(f32::INFINITY)).labelled_by(label.id);
-        if !ui.memory(|m| m.focused().is_some()) {
+        if just_opened {
             field.request_focus();
         }
         let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));

@@ -74,7 +74,7 @@ fn warnings(ui: &mut Ui, warnings: &[String]) {
     }
     let title = if warnings.len() == 1 { "1 warning".to_owned() } else { format!("{} warnings", warnings.len()) };
     let color = Palette::in_ui(ui).warn;
-    CollapsingHeader::new(RichText::new(format!("⚠ {title}")).color(color)).id_salt("warnings").show(ui, |ui| {
+    CollapsingHeader::new(RichText::new(format!("! {title}")).color(color)).id_salt("warnings").show(ui, |ui| {
         for warning in warnings {
             ui.label(RichText::new(warning).small());
         }

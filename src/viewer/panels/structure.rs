@@ -37,7 +37,7 @@ fn choice(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
     });
-    response.response.on_hover_text(chosen.help);
+    response.response.accessible_name("Structure").on_hover_text(chosen.help);
 }
 
 fn test(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -93,7 +93,7 @@ fn parameter(ui: &mut Ui, param: &'static Param, value: &mut Value) -> bool {
                     let response = ui.add(widget).labelled_by(label.id);
                     settle(ui, id, &response, shown, v)
                 }
-                (Kind::Choice { options }, Value::Choice(v)) => options_of(ui, param, options, v),
+                (Kind::Choice { options }, Value::Choice(v)) => options_of(ui, param, label.id, options, v),
                 _ => false,
             }
         })
@@ -120,12 +120,19 @@ fn settle<T: Copy + PartialEq + Send + Sync + 'static>(
     changed
 }
 
-fn options_of(ui: &mut Ui, param: &Param, options: &'static [&'static str], value: &mut &'static str) -> bool {
+fn options_of(
+    ui: &mut Ui,
+    param: &Param,
+    label: eframe::egui::Id,
+    options: &'static [&'static str],
+    value: &mut &'static str,
+) -> bool {
     let before = *value;
-    ComboBox::from_id_salt(param.id).selected_text(*value).show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt(param.id).selected_text(*value).show_ui(ui, |ui| {
         for option in options {
             ui.selectable_value(value, *option, *option);
         }
     });
+    list.response.labelled_by(label);
     *value != before
 }

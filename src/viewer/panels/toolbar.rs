@@ -29,7 +29,6 @@ fn structure(ui: &mut Ui, state: &State, commands: &mut Commands) {
             commands.push(Command::Structure(entry.id));
         }
     }
-    ui.separator();
 }
 
 fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -41,7 +40,7 @@ fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
     });
-    combo.response.on_hover_text(chosen.help());
+    combo.response.accessible_name("Picture").on_hover_text(chosen.help());
 }
 
 /// A grid has no depth: its cells are looked at in layers.
@@ -51,15 +50,15 @@ fn slice(ui: &mut Ui, state: &State, resolution: [u32; 3], commands: &mut Comman
     let axis = overlay.slice_axis.min(2);
     let slider = Slider::new(&mut overlay.slice, 0..=resolution[axis]).text("Slice");
     ui.add(slider).on_hover_text("One layer of cells; 0 shows all of them.");
-    for (i, axis) in Axis::ALL.into_iter().enumerate() {
-        if ui
-            .selectable_label(overlay.slice_axis == i, axis.name())
-            .on_hover_text("The axis that layers are counted along.")
-            .clicked()
-        {
-            (overlay.slice_axis, overlay.slice) = (i, overlay.slice.min(resolution[i]));
+    let list = ComboBox::from_id_salt("axis").width(theme::ROW).selected_text(Axis::ALL[axis].name());
+    let list = list.show_ui(ui, |ui| {
+        for (i, axis) in Axis::ALL.into_iter().enumerate() {
+            if ui.selectable_label(overlay.slice_axis == i, axis.name()).clicked() {
+                (overlay.slice_axis, overlay.slice) = (i, overlay.slice.min(resolution[i]));
+            }
         }
-    }
+    });
+    list.response.accessible_name("Axis").on_hover_text("The axis that layers are counted along.");
     if overlay != before {
         commands.push(Command::Overlay(overlay));
     }

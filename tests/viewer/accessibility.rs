@@ -1,0 +1,85 @@
+//! Names for those who cannot see the window, and keys for those who have no mouse.
+
+use std::collections::BTreeSet;
+
+use eframe::egui::{Key, Modifiers, Role};
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::window::Window;
+
+#[track_caller]
+fn all_named(w: &mut Window, when: &str) {
+    w.step();
+    let unnamed = w.harness.unnamed_widgets();
+    assert!(unnamed.is_empty(), "{when}: {}", unnamed.join("\n"));
+    // A tooltip is no name: it is what egui falls back to.
+    let sentences: Vec<String> = w
+        .harness
+        .get_all_by(|n| n.label().is_some_and(|l| l.ends_with('.')))
+        .filter(|n| !matches!(n.accesskit_node().role(), Role::Canvas | Role::GenericContainer | Role::Label | Role::Pane))
+        .map(|n| format!("{:?}", n.accesskit_node().label()))
+        .collect();
+    assert!(sentences.is_empty(), "{when}: {}", sentences.join("\n"));
+}
+
+#[test]
+fn everything_that_can_be_used_has_a_name() {
+    let mut w = Window::lecture();
+    w.click(Role::DisclosureTriangle, "Parameters");
+    for button in ["BVH", "k-d tree", "Grid", "Brute force"] {
+        w.button(button);
+        w.settle();
+        all_named(&mut w, button);
+    }
+    for menu in ["File", "View", "Window", "Help"] {
+        w.button(menu);
+        all_named(&mut w, menu);
+        w.key(Modifiers::NONE, Key::Escape);
+    }
+    w.key(Modifiers::COMMAND, Key::L);
+    all_named(&mut w, "the field for a path");
+    w.key(Modifiers::NONE, Key::Escape);
+    w.key(Modifiers::NONE, Key::Questionmark);
+    all_named(&mut w, "the page of keys");
+}
+
+#[test]
+fn tab_reaches_the_main_controls() {
+    let mut w = Window::lecture();
+    let mut reached = BTreeSet::new();
+    for _ in 0..60 {
+        w.key(Modifiers::NONE, Key::Tab);
+        let focused = w.harness.query_by(|n| n.is_focused() && n.role() != Role::Window);
+        reached.extend(focused.and_then(|n| n.accesskit_node().label()).map(|l| l.split('.').next().unwrap_or(&l).to_owned()));
+    }
+    let wanted = [
+        "File",
+        "View",
+        "Window",
+        "Help",
+        "BVH",
+        "k-d tree",
+        "Grid",
+        "Watertight",
+        "Parameters",
+        "Node boxes",
+        "Leaves only",
+        "Depth",
+        "Measure",
+        "3D viewport",
+    ];
+    let missed: Vec<_> = wanted.iter().filter(|name| !reached.contains(**name)).collect();
+    assert!(missed.is_empty(), "Tab does not reach {missed:?}; it reaches {reached:?}");
+}
+
+#[test]
+fn the_viewport_says_what_is_to_be_seen() {
+    let mut w = Window::lecture();
+    let says = |w: &Window| w.harness.get_by_role(Role::Canvas).accesskit_node().label().unwrap_or_default();
+    for part in ["3D viewport", "builtin:lecture", "BVH", "depth 3", "samples a pixel"] {
+        assert!(says(&w).contains(part), "{part}: {}", says(&w));
+    }
+    w.button("k-d tree");
+    w.settle();
+    assert!(says(&w).contains("k-d tree"));
+}

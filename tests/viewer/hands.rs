@@ -1,0 +1,133 @@
+//! Mouse and keys in the viewport.
+
+use boxwood::scene::{Camera, Projection};
+use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Role, TouchPhase, Vec2, vec2};
+use egui_kittest::kittest::Queryable;
+
+use crate::window::Window;
+
+fn teapot() -> Window {
+    Window::with_model("builtin:teapot?triangles=1000")
+}
+
+fn distance(c: &Camera) -> f32 {
+    c.eye.distance(c.target)
+}
+
+fn drag(w: &mut Window, by: Vec2, button: PointerButton, modifiers: Modifiers) -> (Camera, Camera) {
+    let before = w.state().camera;
+    w.drag(w.viewport().center(), by, button, modifiers);
+    (before, w.state().camera)
+}
+
+#[test]
+fn a_drag_orbits_and_a_new_picture_follows() {
+    let mut w = teapot();
+    let seen = w.state().picture.as_ref().expect("a picture").request;
+    let (before, after) = drag(&mut w, vec2(120.0, 30.0), PointerButton::Primary, Modifiers::NONE);
+    assert_eq!(before.target, after.target);
+    assert!(before.eye.distance(after.eye) > 0.1 * distance(&before));
+    assert!((distance(&after) / distance(&before) - 1.0).abs() < 1e-4);
+    w.until("a picture from there", |s| {
+        s.picture.as_ref().is_some_and(|p| p.request > seen && p.camera == after && p.progress.done)
+    });
+}
+
+#[test]
+fn a_small_move_is_a_click_that_turns_nothing() {
+    let mut w = teapot();
+    let (before, after) = drag(&mut w, vec2(2.0, 1.0), PointerButton::Primary, Modifiers::NONE);
+    assert_eq!(before, after);
+}
+
+#[test]
+fn shift_or_the_middle_button_pans() {
+    let mut w = teapot();
+    for (button, modifiers) in [(PointerButton::Primary, Modifiers::SHIFT), (PointerButton::Middle, Modifiers::NONE)] {
+        let (before, after) = drag(&mut w, vec2(50.0, 20.0), button, modifiers);
+        let (eye, target) = (after.eye - before.eye, after.target - before.target);
+        assert!(eye.length() > 0.01 * distance(&before) && eye.distance(target) < 1e-4 * distance(&before), "{button:?}");
+    }
+}
+
+#[test]
+fn the_wheel_zooms_and_home_comes_back() {
+    let mut w = teapot();
+    let first = w.state().camera;
+    let notch = |y: f32| Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, y),
+        phase: TouchPhase::Move,
+        source: MouseWheelSource::Unknown,
+        modifiers: Modifiers::NONE,
+    };
+    w.harness.hover_at(w.viewport().center() + vec2(40.0, 10.0));
+    (0..3).for_each(|_| w.harness.event(notch(1.0)));
+    w.harness.run_steps(30);
+    let closer = distance(&w.state().camera);
+    assert!(closer < 0.95 * distance(&first), "{closer} of {}", distance(&first));
+    (0..6).for_each(|_| w.harness.event(notch(-1.0)));
+    w.harness.run_steps(30);
+    assert!(distance(&w.state().camera) > distance(&first));
+    w.key(Modifiers::NONE, Key::Home);
+    let framed = w.state().camera;
+    w.drag(w.viewport().center(), vec2(0.0, 60.0), PointerButton::Middle, Modifiers::NONE);
+    w.key(Modifiers::NONE, Key::Home);
+    assert!(w.state().camera.eye.distance(framed.eye) < 1e-3 * distance(&framed));
+}
+
+#[test]
+fn keys_work_whatever_has_the_focus_but_for_text_fields() {
+    let mut w = teapot();
+    let centre = w.viewport().center();
+    w.drag(centre, vec2(60.0, 0.0), PointerButton::Primary, Modifiers::NONE);
+    assert!(w.harness.get_by_role(Role::Canvas).is_focused(), "a click in the viewport gives it the focus");
+    let before = w.state().camera;
+    for (key, turned) in [(Key::ArrowLeft, true), (Key::ArrowUp, true), (Key::Plus, true)] {
+        let from = w.state().camera;
+        w.key(Modifiers::NONE, key);
+        assert_eq!(w.state().camera != from, turned, "{key:?}");
+    }
+    assert!(w.harness.get_by_role(Role::Canvas).is_focused(), "arrows stay in the viewport");
+    assert_eq!(before.projection, w.state().camera.projection);
+
+    let flat = |w: &Window| matches!(w.state().camera.projection, Projection::Orthographic { .. });
+    assert!(!flat(&w));
+    w.key(Modifiers::NONE, Key::P);
+    assert!(flat(&w), "P with the focus in the viewport");
+    w.harness.get_by_role_and_label(Role::Button, "Grid").focus();
+    w.step();
+    w.key(Modifiers::NONE, Key::P);
+    assert!(!flat(&w), "P with the focus on a button");
+
+    w.key(Modifiers::COMMAND, Key::L);
+    w.step();
+    w.harness.event(Event::Text("p".into()));
+    w.key(Modifiers::NONE, Key::P);
+    assert!(!flat(&w), "P in a text field is a letter");
+}
+
+#[test]
+fn keys_enlarge_everything() {
+    let mut w = teapot();
+    for (key, scale) in [(Key::Plus, 1.25), (Key::Equals, 1.5), (Key::Minus, 1.25), (Key::Num0, 1.0)] {
+        w.key(Modifiers::COMMAND, key);
+        assert_eq!(w.state().settings.scale, scale, "{key:?}");
+        assert_eq!(w.harness.ctx.zoom_factor(), scale, "{key:?}");
+    }
+}
+
+#[test]
+fn escape_closes_an_open_menu_before_anything_else() {
+    let mut w = teapot();
+    w.key(Modifiers::NONE, Key::Questionmark);
+    assert!(w.state().help);
+    w.button("Window");
+    w.step();
+    assert!(w.says("Reset layout"));
+    w.key(Modifiers::NONE, Key::Escape);
+    w.step();
+    assert!(!w.says("Reset layout") && w.state().help, "the menu is closed, the page is not");
+    w.key(Modifiers::NONE, Key::Escape);
+    assert!(!w.state().help);
+}

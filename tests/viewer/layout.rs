@@ -1,0 +1,189 @@
+//! No text is cut off, hidden or written over, in windows small and large.
+
+use boxwood::viewer::theme;
+use eframe::egui::{self, Modifiers, PointerButton, Rect, Vec2, vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::files::{self, Files};
+use crate::window::{Painted, Setup, Window};
+
+/// A window as it is tried, and how.
+struct Case {
+    name: &'static str,
+    /// In points, as the system counts them.
+    size: Vec2,
+    pixels_per_point: f32,
+    /// The user's own enlargement.
+    scale: f32,
+}
+
+const fn case(name: &'static str, width: f32, height: f32, pixels_per_point: f32, scale: f32) -> Case {
+    Case { name, size: Vec2::new(width, height), pixels_per_point, scale }
+}
+
+const CASES: [Case; 6] = [
+    case("960x600", 960.0, 600.0, 1.0, 1.0),
+    case("1280x800", 1280.0, 800.0, 1.0, 1.0),
+    case("3840x2160 at 2", 1920.0, 1080.0, 2.0, 1.0),
+    case("960x600, all smaller", 960.0, 600.0, 1.0, 0.75),
+    case("1280x800, all larger", 1280.0, 800.0, 1.0, 1.25),
+    case("3840x2160 at 2, all twice as large", 1920.0, 1080.0, 2.0, 2.0),
+];
+
+/// Letters may reach this far over an edge: the space beside them does.
+const SLACK: f32 = 1.0;
+
+/// Text that is never scrolled away.
+const ALWAYS: [&str; 12] =
+    ["File", "View", "Window", "Help", "SCENE", "TIMINGS", "Measure", "BVH", "k-d tree", "Grid", "Brute force", "Shaded"];
+
+fn open(case: &Case, options: impl FnOnce(&mut Setup)) -> Window {
+    let mut setup = Setup { size: case.size, pixels_per_point: case.pixels_per_point, ..Setup::default() };
+    setup.options.samples = Some(1);
+    options(&mut setup);
+    let mut w = Window::new(setup);
+    w.scale(case.scale);
+    w.ready();
+    w
+}
+
+/// What is wrong with the text of the last frame.
+fn complaints(w: &Window) -> Vec<String> {
+    let screen = w.harness.ctx.content_rect();
+    let texts = w.texts();
+    let visible: Vec<(&Painted, Rect)> =
+        texts.iter().map(|t| (t, t.rect.intersect(t.clip).intersect(screen))).filter(|(_, r)| r.is_positive()).collect();
+    let mut wrong = Vec::new();
+    for t in &texts {
+        let beside = t.rect.y_range().intersection(t.clip.y_range()).span() > SLACK && !t.rect.intersect(t.clip).is_positive();
+        if beside {
+            wrong.push(format!("out of sight at a side: {:?}", t.text));
+        }
+    }
+    for (t, seen) in &visible {
+        if t.elided {
+            wrong.push(format!("shortened: {:?}", t.text));
+        }
+        // Downwards a list may go on where it is scrolled to; sideways nothing is cut.
+        if seen.width() + SLACK < t.rect.width() {
+            wrong.push(format!("cut off at a side: {:?}, {:.0} of {:.0} points", t.text, seen.width(), t.rect.width()));
+        }
+    }
+    for (i, (a, ra)) in visible.iter().enumerate() {
+        for (b, rb) in &visible[..i] {
+            let both = ra.intersect(*rb);
+            if both.width() > SLACK && both.height() > SLACK {
+                wrong.push(format!("over each other: {:?} and {:?}", a.text, b.text));
+            }
+        }
+    }
+    // What is beside the visible part of the bar is not even drawn.
+    let view = w.viewport();
+    for node in w.harness.query_all_by(|n| n.label().is_some() && n.raw_bounds().is_some()) {
+        let rect = node.rect();
+        let in_bar = node.accesskit_node().label().as_deref() != Some("Statistics")
+            && rect.center().y < view.top()
+            && rect.center().y > theme::TOP_BAR
+            && rect.left() >= view.left();
+        if in_bar && rect.right() > view.right() + SLACK && rect.left() < view.right() + 400.0 {
+            wrong.push(format!("beside the bar: {:?}", node.accesskit_node().label()));
+        }
+    }
+    for name in ALWAYS {
+        let whole = |(t, seen): &(&Painted, Rect)| t.text == name && seen.height() + SLACK >= t.rect.height();
+        if !visible.iter().any(whole) {
+            wrong.push(format!("not to be seen: {name:?}"));
+        }
+    }
+    wrong
+}
+
+#[track_caller]
+fn check(w: &mut Window, case: &Case, what: &str, wrong: &mut Vec<String>) {
+    w.harness.remove_cursor();
+    w.step();
+    w.harness.run_steps(2);
+    wrong.extend(complaints(w).into_iter().map(|c| format!("{}, {what}: {c}", case.name)));
+}
+
+#[track_caller]
+fn report(mut wrong: Vec<String>) {
+    wrong.dedup();
+    assert!(wrong.is_empty(), "{} complaints:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn no_text_is_cut_off_or_written_over() {
+    let mut wrong = Vec::new();
+    for case in &CASES {
+        let mut w = open(case, |_| {});
+        check(&mut w, case, "as it opens", &mut wrong);
+        for button in ["k-d tree", "Grid"] {
+            w.button(button);
+            w.ready();
+            check(&mut w, case, button, &mut wrong);
+        }
+        w.choose("Shaded", "Primitives tested");
+        w.until("a heat map", |s| s.picture.as_ref().is_some_and(|p| p.range.max > 1.0));
+        // The label in the bar is another now.
+        let mut heat = Vec::new();
+        check(&mut w, case, "heat map", &mut heat);
+        wrong.extend(heat.into_iter().filter(|c| !c.ends_with("\"Shaded\"")));
+    }
+    report(wrong);
+}
+
+#[test]
+fn no_text_is_cut_off_with_everything_open() {
+    let files = Files::new();
+    let long = "a name as long as people give them, with a date and a version, 2024-06-01 final v3.ply";
+    let path = files.write(long, files::ply());
+    let mut wrong = Vec::new();
+    for case in &CASES {
+        let mut w = open(case, |s| s.options.model = Some("builtin:teapot?triangles=1000".into()));
+        w.click(egui::Role::DisclosureTriangle, "Parameters");
+        w.click(egui::Role::CheckBox, "Range of depths");
+        w.step();
+        check(&mut w, case, "parameters", &mut wrong);
+        w.drag(w.viewport().center(), Vec2::ZERO, PointerButton::Primary, Modifiers::NONE);
+        w.until("what was clicked", |s| s.picked.is_some());
+        check(&mut w, case, "a click", &mut wrong);
+        w.open_path(&files.missing("a model that is not where it was, in a folder of a long name.gltf").to_string_lossy());
+        w.until("an error", |s| s.error.is_some());
+        check(&mut w, case, "an error", &mut wrong);
+        w.open_path(&path.to_string_lossy());
+        w.until("the file", |s| s.model.as_ref().is_some_and(|m| m.geometry.triangle_count() == 2));
+        w.ready();
+        check(&mut w, case, "a long name", &mut wrong);
+    }
+    report(wrong);
+}
+
+#[test]
+fn no_text_is_cut_off_in_a_full_table() {
+    let case = &CASES[0];
+    let mut w = open(case, |s| s.alone = true);
+    let mut wrong = Vec::new();
+    w.button("Measure");
+    w.step();
+    let mut busy = Vec::new();
+    check(&mut w, case, "measuring", &mut busy);
+    wrong.extend(busy.into_iter().filter(|c| !c.ends_with("\"Measure\"")));
+    w.until("timings", |s| s.measuring.is_none() && s.timings.view.is_some());
+    w.settle();
+    check(&mut w, case, "measured", &mut wrong);
+    w.drag(w.viewport().center(), vec2(60.0, 0.0), PointerButton::Middle, Modifiers::NONE);
+    w.settle();
+    check(&mut w, case, "measured on another view", &mut wrong);
+    report(wrong);
+}
+
+#[test]
+fn a_narrow_window_folds_the_statistics() {
+    let mut w = open(&CASES[0], |_| {});
+    assert!(w.harness.ctx.content_rect().width() < theme::FOLD_BELOW);
+    assert!(!w.says("SAH cost"));
+    w.button("Statistics");
+    w.step();
+    assert!(w.says("SAH cost"));
+}

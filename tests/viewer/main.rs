@@ -1,0 +1,22 @@
+//! The real window, driven as a person drives it: keys, mouse, names of widgets. Only the file
+//! dialog is another, since nobody sits there to answer it.
+#![cfg(feature = "viewer")]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod files;
+mod window;
+
+mod accessibility;
+mod errors;
+mod hands;
+mod layout;
+mod measuring;
+mod modes;
+mod opening;
+mod overlays;
+mod pace;
+mod parameters;
+mod pixels;
+mod settings;
+mod structures;
