@@ -74,6 +74,8 @@ pub struct State {
     counting: Option<Counting>,
     collecting: Option<(Wanted, Key, Collecting)>,
     collected_for: Option<(Wanted, Key)>,
+    /// The boxes are those of the present view, structure and settings.
+    overlay_is_current: bool,
     dialog: Box<dyn FileDialog>,
     asked_for_file: Option<Receiver<Option<PathBuf>>>,
     picking: Option<Picking>,
@@ -134,6 +136,7 @@ impl State {
             counting: None,
             collecting: None,
             collected_for: None,
+            overlay_is_current: false,
             dialog,
             asked_for_file: None,
             picking: None,
@@ -168,8 +171,10 @@ impl State {
 
     /// Whether anything runs that will change what is shown.
     pub fn is_busy(&self) -> bool {
-        let rendering = self.shown.is_some() && self.picture.as_ref().is_none_or(|p| !p.progress.done);
-        self.loading.is_some() || self.building.is_some() || self.measuring.is_some() || self.collecting.is_some() || rendering
+        let asked = self.requested.as_ref().map(|a| a.number);
+        let at_rest = |p: &Arc<Picture>| p.progress.done && Some(p.request) == asked;
+        let drawing = self.shown.is_some() && !(self.picture.as_ref().is_some_and(at_rest) && self.overlay_is_current);
+        self.loading.is_some() || self.building.is_some() || self.measuring.is_some() || drawing
     }
 
     /// Does one thing that a panel asked for. Commands that concern the window itself are the app's.
@@ -536,6 +541,7 @@ impl State {
         let view = View::new(&self.camera, model.geometry.space(), self.aspect());
         let wanted = Wanted { settings: self.settings.overlay, view, size_px: self.size_px, limit: self.box_limit };
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
+        self.overlay_is_current = current;
         if current || self.collecting.is_some() || self.measuring.is_some() {
             return;
         }

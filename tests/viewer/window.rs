@@ -182,10 +182,13 @@ impl Window {
     /// Frames until nothing is going on and everything is on the screen.
     #[track_caller]
     pub fn settle(&mut self) {
-        self.step();
-        self.until("nothing going on", |s| {
-            !s.is_busy() && s.shown.as_ref().is_none_or(|b| b.stats.is_some()) && (s.model.is_none() || s.shown.is_some())
-        });
+        // Twice, since what was clicked in one frame is carried out in the next.
+        for _ in 0..2 {
+            self.harness.run_steps(2);
+            self.until("nothing going on", |s| {
+                !s.is_busy() && s.shown.as_ref().is_none_or(|b| b.stats.is_some()) && (s.model.is_none() || s.shown.is_some())
+            });
+        }
         self.harness.run_steps(2);
     }
 
