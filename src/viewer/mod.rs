@@ -1,4 +1,4 @@
-//! The window. [`state`] knows everything and changes by [`command`]s, [`panels`] draw it, [`workers`]
+//! The window. [`state`] knows everything and changes by [`command`]s, [`panels`] draw it, `workers`
 //! do the long work, [`gpu`] puts the 3D view on the screen.
 
 pub mod app;
