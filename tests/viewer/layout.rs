@@ -39,7 +39,6 @@ const ALWAYS: [&str; 12] =
 
 fn open(case: &Case, options: impl FnOnce(&mut Setup)) -> Window {
     let mut setup = Setup { size: case.size, pixels_per_point: case.pixels_per_point, ..Setup::default() };
-    setup.options.samples = Some(1);
     options(&mut setup);
     let mut w = Window::new(setup);
     w.scale(case.scale);

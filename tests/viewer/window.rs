@@ -12,8 +12,8 @@ use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Rect, Role,
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-/// The size of most windows here.
-pub const SIZE: Vec2 = egui::vec2(1280.0, 800.0);
+/// The size of most windows here: just wide enough for all panels.
+pub const SIZE: Vec2 = egui::vec2(1120.0, 720.0);
 /// After this long, what has not happened will not.
 pub const PATIENCE: Duration = Duration::from_secs(40);
 
@@ -57,7 +57,7 @@ pub struct Setup {
 impl Default for Setup {
     fn default() -> Self {
         // Pictures that are soon done leave the processors to the tests.
-        let options = ViewerOptions { samples: Some(2), ..ViewerOptions::default() };
+        let options = ViewerOptions { samples: Some(1), ..ViewerOptions::default() };
         Self {
             size: SIZE,
             pixels_per_point: 1.0,
