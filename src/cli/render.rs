@@ -63,7 +63,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let progress = Progress::new();
     let still =
         bar::watch("render", &progress, || render::render(&job, width, height, args.spp, &cx.pool, &cx.cancel, &progress))?;
-    let pixels = still.develop(&job, None, None);
+    let pixels = still.develop(&job, None, None, &cx.pool);
     out.write(&cx.cancel, |file| {
         let png = image::codecs::png::PngEncoder::new(&mut *file);
         png.write_image(&pixels, width, height, image::ExtendedColorType::Rgba8).map_err(std::io::Error::other)?;

@@ -1,6 +1,10 @@
 //! From sums of samples to bytes: exposure is one, colours are gamma-encoded, amounts go through a
 //! range and a colour map.
 
+use std::sync::LazyLock;
+
+use rayon::prelude::*;
+
 use super::colormap::viridis;
 use super::{Film, Mode};
 
@@ -40,10 +44,21 @@ pub fn auto_range(film: &Film, mode: Mode) -> Range {
     }
 }
 
+/// Pixels developed at a time.
+const CHUNK: usize = 4096;
+
 impl Development {
-    /// Four bytes a pixel (red, green, blue, opacity), row 0 at the top.
+    /// Four bytes a pixel (red, green, blue, opacity), row 0 at the top. Runs on the threads of the
+    /// pool that it is called in.
     pub fn develop(&self, film: &Film) -> Vec<u8> {
-        film.means().flat_map(|mean| self.pixel(mean)).collect()
+        let mut rgba = vec![0; film.pixels() * 4];
+        rgba.par_chunks_mut(4 * CHUNK).zip(film.sums().par_chunks(CHUNK)).for_each(|(rgba, sums)| {
+            let scale = 1.0 / film.samples().max(1) as f32;
+            for (rgba, sum) in rgba.as_chunks_mut().0.iter_mut().zip(sums) {
+                *rgba = self.pixel(sum.map(|x| x * scale));
+            }
+        });
+        rgba
     }
 
     fn pixel(&self, [r, g, b, coverage]: [f32; 4]) -> [u8; 4] {
@@ -65,13 +80,37 @@ impl Development {
     }
 }
 
-/// Linear light to sRGB.
+/// Steps of the table of [`encode`].
+const STEPS: usize = 4096;
+
+/// Linear light to sRGB by a table, linear in between: a twentieth of a byte's step off at most, and
+/// far faster than a power for each channel of each pixel.
 fn encode(x: f32) -> f32 {
-    let x = x.clamp(0.0, 1.0);
+    static TABLE: LazyLock<Vec<f32>> = LazyLock::new(|| (0..=STEPS).map(|i| srgb(i as f32 / STEPS as f32)).collect());
+    let at = x.clamp(0.0, 1.0) * STEPS as f32;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]
+    let i = (at as usize).min(STEPS - 1);
+    TABLE[i] + (TABLE[i + 1] - TABLE[i]) * (at - i as f32)
+}
+
+/// Linear light to sRGB (IEC 61966-2-1).
+fn srgb(x: f32) -> f32 {
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
 fn byte(x: f32) -> u8 {
     (x * 255.0 + 0.5) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_as_good_as_the_formula() {
+        let worst = (0..=1_000_000u32).map(|i| i as f32 * 1e-6).map(|x| (encode(x) - srgb(x)).abs() * 255.0);
+        assert!(worst.fold(0.0, f32::max) < 0.05);
+        assert_eq!((byte(encode(-1.0)), byte(encode(7.0)), byte(encode(f32::NAN))), (0, 255, 0));
+    }
 }

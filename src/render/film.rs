@@ -57,6 +57,16 @@ impl Film {
         sums.zip(depth.map(Some)).collect()
     }
 
+    /// Their number.
+    pub const fn pixels(&self) -> usize {
+        self.sums.len()
+    }
+
+    /// The sums of each pixel's samples.
+    pub(super) fn sums(&self) -> &[[f32; 4]] {
+        &self.sums
+    }
+
     /// The mean of each pixel's samples.
     pub fn means(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
         let scale = 1.0 / self.samples.max(1) as f32;

@@ -21,6 +21,8 @@ use crate::task::{Cancel, Cancelled, Pool};
 pub const FIRST_PASS_SECS: f64 = 0.024;
 /// The coarsest pass: one pixel for this many on each axis.
 const COARSEST: u32 = 64;
+/// What a pixel is thought to take besides its ray before anything was learnt, in seconds.
+const FIRST_OVERHEAD_SECS: f64 = 2e-7;
 /// Camera rays counted for the figures beside the picture.
 const COUNTED: u32 = 48;
 
@@ -76,7 +78,7 @@ impl Renderer {
     /// If the system grants no thread.
     pub fn new(pool: Pool, notify: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(Shared { state: Mutex::default(), wake: Condvar::new() });
-        let worker = Worker { shared: Arc::clone(&shared), pool, generation: 0, notify };
+        let worker = Worker { shared: Arc::clone(&shared), pool, generation: 0, overhead_secs: FIRST_OVERHEAD_SECS, notify };
         let thread = std::thread::Builder::new().name("render".into()).spawn(move || worker.run())?;
         Ok(Self { shared, thread: Some(thread) })
     }
@@ -155,6 +157,9 @@ struct Worker<N> {
     shared: Arc<Shared>,
     pool: Pool,
     generation: u64,
+    /// Seconds that a pixel takes besides finding its hit: making the ray, shading, developing; learnt
+    /// from pass to pass.
+    overhead_secs: f64,
     notify: N,
 }
 
@@ -166,6 +171,8 @@ struct Task {
     range: Option<Range>,
     counts: Counts,
     counted: u64,
+    /// Seconds to find a camera ray's hit, as foreseen.
+    ray_secs: f64,
     /// The film of full resolution, kept over a pause.
     film: Option<Film>,
 }
@@ -270,7 +277,9 @@ impl<N: Fn()> Worker<N> {
             done,
         };
         self.generation += 1;
-        let rgba = Development { mode, range, background: None }.develop(film);
+        let rgba = self.pool.run(|| Development { mode, range, background: None }.develop(film));
+        let overhead_secs = start.elapsed().as_secs_f64() / film.pixels() as f64 - task.ray_secs;
+        self.overhead_secs = (0.5 * (self.overhead_secs + overhead_secs)).max(0.0);
         let picture = Picture {
             generation: self.generation,
             request: task.number,
@@ -310,12 +319,13 @@ impl<N: Fn()> Worker<N> {
                 break;
             }
         }
-        // Both calls of each ray together are about as slow as one with shading.
+        // Both calls of each ray together are a little slower than one; occlusion takes a second ray.
         let weight = if request.job.mode == Mode::Ao { 2.0 } else { 1.0 };
-        let secs_per_ray = weight * start.elapsed().as_secs_f64() / task.counted as f64 / self.pool.threads() as f64;
+        task.ray_secs = weight * start.elapsed().as_secs_f64() / task.counted as f64 / self.pool.threads() as f64;
+        let secs_per_pixel = task.ray_secs + self.overhead_secs;
         let pixels = f64::from(request.width) * f64::from(request.height);
         let mut step = 1;
-        while step < COARSEST && pixels / f64::from(step * step) * secs_per_ray > FIRST_PASS_SECS * 2.0 / 3.0 {
+        while step < COARSEST && pixels / f64::from(step * step) * secs_per_pixel > FIRST_PASS_SECS * 2.0 / 3.0 {
             step *= 2;
         }
         Ok(step)
@@ -325,6 +335,6 @@ impl<N: Fn()> Worker<N> {
 impl Task {
     fn new(request: Request, number: u64) -> Self {
         let range = request.range;
-        Self { request, number, start: Instant::now(), range, counts: Counts::default(), counted: 0, film: None }
+        Self { request, number, start: Instant::now(), range, counts: Counts::default(), counted: 0, ray_secs: 0.0, film: None }
     }
 }

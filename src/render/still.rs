@@ -40,8 +40,8 @@ pub fn render(
 
 impl Still {
     /// Four bytes a pixel; `range` for amounts, one that suits if `None`.
-    pub fn develop(&self, job: &Job, range: Option<Range>, background: Option<[f32; 3]>) -> Vec<u8> {
+    pub fn develop(&self, job: &Job, range: Option<Range>, background: Option<[f32; 3]>, pool: &Pool) -> Vec<u8> {
         let range = range.unwrap_or_else(|| auto_range(&self.film, job.mode));
-        Development { mode: job.mode, range, background }.develop(&self.film)
+        pool.run(|| Development { mode: job.mode, range, background }.develop(&self.film))
     }
 }

@@ -35,6 +35,14 @@ pub enum Command {
     Overlay(OverlaySettings),
     /// Look from elsewhere.
     Camera(Camera),
+    /// Look from where the camera was before its last move.
+    CameraBack,
+    /// And forward again.
+    CameraForward,
+    /// Take back the last choice of structure, parameters, selection or visibility.
+    Undo,
+    /// Make it again.
+    Redo,
     /// Say what is there: (-1, -1) is the lower left corner of the view, (1, 1) the upper right.
     Pick(Vec2),
     /// Frame the whole model.

@@ -131,3 +131,54 @@ fn escape_closes_an_open_menu_before_anything_else() {
     w.key(Modifiers::NONE, Key::Escape);
     assert!(!w.state().help);
 }
+
+#[test]
+fn the_camera_has_a_history_of_its_own() {
+    let mut w = teapot();
+    let first = w.state().camera;
+    w.drag(w.viewport().center(), vec2(90.0, 20.0), PointerButton::Primary, Modifiers::NONE);
+    let orbited = w.state().camera;
+    w.key(Modifiers::NONE, Key::P);
+    let flat = w.state().camera;
+    assert!(orbited != first && flat != orbited);
+    let alt = |w: &mut Window, key| {
+        w.key(Modifiers::ALT, key);
+        w.state().camera
+    };
+    assert_eq!(alt(&mut w, Key::ArrowLeft), orbited);
+    assert_eq!(alt(&mut w, Key::ArrowLeft), first, "a drag is one step");
+    assert_eq!(alt(&mut w, Key::ArrowLeft), first, "there is nothing before");
+    assert_eq!(alt(&mut w, Key::ArrowRight), orbited);
+    w.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(w.state().camera, orbited, "the camera is not what Ctrl+Z takes back");
+}
+
+#[test]
+fn choices_are_taken_back_and_made_again() {
+    let mut w = Window::lecture();
+    let redo = Modifiers::COMMAND | Modifiers::SHIFT;
+    let shown = |w: &Window| w.state().shown.as_ref().map(|b| (b.key.entry.id, b.key.params.clone()));
+    let first = shown(&w);
+    w.set_parameter("Leaf size", "8");
+    w.settle();
+    let larger = shown(&w);
+    w.button("Grid");
+    w.settle();
+    assert_eq!(shown(&w).map(|s| s.0), Some("grid"));
+    w.key(Modifiers::COMMAND, Key::Z);
+    w.settle();
+    assert_eq!(shown(&w), larger);
+    w.key(Modifiers::COMMAND, Key::Z);
+    w.settle();
+    assert!(shown(&w) == first && first != larger);
+    w.key(redo, Key::Z);
+    w.settle();
+    assert_eq!(shown(&w), larger);
+
+    w.drag(w.viewport().center(), vec2(0.0, 0.0), PointerButton::Primary, Modifiers::NONE);
+    w.until("a selection", |s| s.picked.is_some());
+    w.key(Modifiers::COMMAND, Key::Z);
+    assert!(w.state().picked.is_none());
+    w.key(redo, Key::Z);
+    assert!(w.state().picked.is_some());
+}

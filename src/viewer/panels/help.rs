@@ -30,6 +30,8 @@ pub fn show(ui: &Ui, state: &State, commands: &mut Commands) {
                 ("+ and -".to_owned(), "Zoom, when the viewport has the focus"),
                 (keys(&menu::FRAME_ALL), "Frame the whole model"),
                 (keys(&menu::PROJECTION), "Perspective or orthographic"),
+                (format!("{}, {}", keys(&menu::CAMERA_BACK), keys(&menu::CAMERA_FORWARD)), "The view before, and forward again"),
+                (format!("{}, {}", keys(&menu::UNDO), keys(&menu::REDO)), "Take back a choice, and make it again"),
                 (keys(&menu::OPEN), "Open a file"),
                 (keys(&menu::OPEN_PATH), "Open a path or a built-in scene"),
                 (keys(&menu::FULL_SCREEN), "Full screen"),

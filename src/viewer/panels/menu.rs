@@ -1,4 +1,4 @@
-//! The bar at the top: File, View, Window, Help.
+//! The bar at the top: File, Edit, View, Window, Help.
 
 use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, Ui};
 
@@ -18,6 +18,14 @@ pub const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key
 pub const FRAME_ALL: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::Home);
 /// Between perspective and orthographic.
 pub const PROJECTION: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::P);
+/// Takes back the last choice.
+pub const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+/// Makes it again.
+pub const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+/// The camera's view before.
+pub const CAMERA_BACK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowLeft);
+/// And forward again.
+pub const CAMERA_FORWARD: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowRight);
 /// In and out of full screen.
 pub const FULL_SCREEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F11);
 /// Larger, smaller, as the system has it.
@@ -35,6 +43,7 @@ const SCALE_STEP: f32 = 0.25;
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file(ui, state, commands));
+        ui.menu_button("Edit", |ui| edit(ui, state, commands));
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Window", |ui| window(ui, state, commands));
         ui.menu_button("Help", |ui| {
@@ -57,6 +66,13 @@ pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
     on(&OPEN, Command::OpenDialog);
     on(&OPEN_PATH, Command::AskForPath(true));
     on(&QUIT, Command::Quit);
+    if !typing {
+        // A text field takes back its own typing.
+        on(&REDO, Command::Redo);
+        on(&UNDO, Command::Undo);
+    }
+    on(&CAMERA_BACK, Command::CameraBack);
+    on(&CAMERA_FORWARD, Command::CameraForward);
     on(&FRAME_ALL, Command::FrameAll);
     on(&PROJECTION, Command::ToggleProjection);
     on(&FULL_SCREEN, Command::FullScreen);
@@ -123,12 +139,32 @@ fn file(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
 }
 
+/// An item that may have nothing to do.
+fn item_if(ui: &mut Ui, possible: bool, text: &str, shortcut: &KeyboardShortcut) -> bool {
+    ui.add_enabled_ui(possible, |ui| item(ui, text, shortcut)).inner
+}
+
+fn edit(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    if item_if(ui, state.choices.has_back(), "Undo", &UNDO) {
+        commands.push(Command::Undo);
+    }
+    if item_if(ui, state.choices.has_forward(), "Redo", &REDO) {
+        commands.push(Command::Redo);
+    }
+}
+
 fn view(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if item(ui, "Frame all", &FRAME_ALL) {
         commands.push(Command::FrameAll);
     }
     if item(ui, "Perspective or orthographic", &PROJECTION) {
         commands.push(Command::ToggleProjection);
+    }
+    if item_if(ui, state.cameras.has_back(), "View before", &CAMERA_BACK) {
+        commands.push(Command::CameraBack);
+    }
+    if item_if(ui, state.cameras.has_forward(), "View after", &CAMERA_FORWARD) {
+        commands.push(Command::CameraForward);
     }
     ui.menu_button("Samples a pixel", |ui| {
         for samples in [1, 16, 64, 256, 1024, 4096] {

@@ -1,4 +1,8 @@
-//! What the window knows, and how commands and finished jobs change it. No drawing here.
+//! What the window knows, and how commands change it; [`finished`] is what finished jobs change, and
+//! [`refresh`] what is asked for anew when the view changes. No drawing here.
+
+mod finished;
+mod refresh;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,7 +11,8 @@ use std::time::{Duration, Instant};
 
 use super::command::Command;
 use super::dialogs::FileDialog;
-use super::gpu::{Overlay, View};
+use super::gpu::Overlay;
+use super::history::{Choices, History, Kind};
 use super::kept::{Built, Kept, Key};
 use super::model::Model;
 use super::navigation;
@@ -16,9 +21,8 @@ use super::pick::Picked;
 use super::settings::Settings;
 use super::timings::Timings;
 use super::workers::{self, Building, Collecting, Counting, Loading, Measuring, Picking, Plan, Shared};
-use crate::accel::{BuildError, cell};
-use crate::job::Outcome;
-use crate::render::{self, Mode, Picture, Range, Renderer, Request};
+use crate::accel::cell;
+use crate::render::{self, Mode, Picture, Range, Renderer};
 use crate::scene::{Camera, CameraSpec};
 use crate::task::Pool;
 use glam::Vec2;
@@ -52,6 +56,10 @@ pub struct State {
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
     pub error: Option<String>,
+    /// The camera's moves, which can be taken back.
+    pub cameras: History<Camera>,
+    /// Choices of structure, parameters, selection and visibility, which can be taken back.
+    pub choices: History<Choices>,
     /// What the last switch of structures changed, and until when it is said.
     pub change: Option<(String, Instant)>,
     /// The field for a path is open, with this in it.
@@ -71,6 +79,10 @@ pub struct State {
     /// What is being measured.
     pub measuring: Option<Measuring>,
     kept: Kept,
+    /// The structure of which a picture is on the screen: what is worked out beside it comes after.
+    seen: Option<Key>,
+    /// The structure whose figures were asked for last.
+    counted: Option<Key>,
     counting: Option<Counting>,
     collecting: Option<(Wanted, Key, Collecting)>,
     collected_for: Option<(Wanted, Key)>,
@@ -124,6 +136,8 @@ impl State {
             timings: Timings::default(),
             picked: None,
             error: None,
+            cameras: History::default(),
+            choices: History::default(),
             change: None,
             asking: None,
             help: false,
@@ -133,6 +147,8 @@ impl State {
             building: None,
             measuring: None,
             kept: Kept::default(),
+            seen: None,
+            counted: None,
             counting: None,
             collecting: None,
             collected_for: None,
@@ -174,11 +190,14 @@ impl State {
         let asked = self.requested.as_ref().map(|a| a.number);
         let at_rest = |p: &Arc<Picture>| p.progress.done && Some(p.request) == asked;
         let drawing = self.shown.is_some() && !(self.picture.as_ref().is_some_and(at_rest) && self.overlay_is_current);
-        self.loading.is_some() || self.building.is_some() || self.measuring.is_some() || drawing
+        self.loading.is_some() || self.building.is_some() || self.measuring.is_some() || self.counting.is_some() || drawing
     }
 
     /// Does one thing that a panel asked for. Commands that concern the window itself are the app's.
     pub fn carry_out(&mut self, command: Command) {
+        if let Some(kind) = Choices::changed_by(&command) {
+            self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), kind, Instant::now());
+        }
         match command {
             Command::Open(model) => self.open(model),
             Command::OpenDialog => self.asked_for_file = Some(self.dialog.pick(Arc::clone(&self.shared.wake))),
@@ -211,10 +230,20 @@ impl State {
                 }
                 self.settings.overlay = overlay;
             }
-            Command::Camera(camera) => self.camera = camera,
+            Command::Camera(camera) => self.look(camera, Kind::Hand),
+            Command::CameraBack => self.camera = self.cameras.back(self.camera).unwrap_or(self.camera),
+            Command::CameraForward => self.camera = self.cameras.forward(self.camera).unwrap_or(self.camera),
+            Command::Undo => {
+                let before = self.choices.back(Choices::of(&self.settings, self.picked.as_ref()));
+                self.restore(before);
+            }
+            Command::Redo => {
+                let after = self.choices.forward(Choices::of(&self.settings, self.picked.as_ref()));
+                self.restore(after);
+            }
             Command::Pick(at) => self.pick(at),
             Command::FrameAll => self.frame_all(),
-            Command::ToggleProjection => self.camera = navigation::toggle_projection(&self.camera),
+            Command::ToggleProjection => self.look(navigation::toggle_projection(&self.camera), Kind::Single),
             Command::MaxSamples(n) => self.settings.max_samples = n.max(1),
             Command::Measure => self.measure(),
             Command::Dismiss => self.error = None,
@@ -232,14 +261,23 @@ impl State {
         self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), Arc::clone(&shown.accel), ray).ok();
     }
 
-    fn advance_picking(&mut self) {
-        let Some(job) = &self.picking else { return };
-        match job.poll() {
-            Outcome::Running => return,
-            Outcome::Done(picked) => self.select(picked),
-            Outcome::Died => {}
+    /// Moves the camera; it can be moved back.
+    fn look(&mut self, camera: Camera, kind: Kind) {
+        self.cameras.leave(self.camera, kind, Instant::now());
+        self.camera = camera;
+    }
+
+    /// Brings choices back that were left.
+    fn restore(&mut self, choices: Option<Choices>) {
+        let Some(choices) = choices else { return };
+        choices.restore(&mut self.settings);
+        self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
+        self.choose();
+        // A selection belongs to the structure that it was made in.
+        if self.shown.as_ref().is_some_and(|b| b.key == self.wanted_key()) {
+            self.select(choices.picked);
+            self.clamp_depth();
         }
-        self.picking = None;
     }
 
     /// The selected box is drawn with the others, so they are collected anew.
@@ -250,7 +288,8 @@ impl State {
 
     fn frame_all(&mut self) {
         if let Some(model) = &self.model {
-            self.camera = self.camera.reframed(&model.bounds(), self.aspect());
+            let framed = self.camera.reframed(&model.bounds(), self.aspect());
+            self.look(framed, Kind::Single);
         }
     }
 
@@ -305,9 +344,6 @@ impl State {
     fn show(&mut self, built: Built) {
         self.before = self.nodes_per_ray();
         self.change = None;
-        if built.stats.is_none() {
-            self.counting = workers::count(&self.shared, &built).ok();
-        }
         (self.picking, self.picked) = (None, None);
         self.shown = Some(built);
         // A depth that the new structure does not have would show nothing.
@@ -357,206 +393,15 @@ impl State {
         self.advance_dialog();
         self.advance_load();
         self.advance_build();
-        self.advance_statistics();
         self.advance_picking();
         self.advance_measuring();
         self.refresh_picture();
+        self.advance_statistics();
         self.refresh_overlay();
-    }
-
-    fn advance_dialog(&mut self) {
-        match self.asked_for_file.as_ref().map(Receiver::try_recv) {
-            Some(Ok(path)) => {
-                self.asked_for_file = None;
-                if let Some(path) = path {
-                    self.open(path.to_string_lossy().into_owned());
-                }
-            }
-            Some(Err(std::sync::mpsc::TryRecvError::Disconnected)) => self.asked_for_file = None,
-            _ => {}
-        }
-    }
-
-    fn advance_load(&mut self) {
-        let Some((name, job)) = &self.loading else { return };
-        if self.size_px == [0, 0] {
-            return; // the first view is made for the viewport, and the first frame says how large it is
-        }
-        let name = name.clone();
-        match job.poll() {
-            Outcome::Running => return,
-            Outcome::Done(Ok(model)) => self.opened(&name, model),
-            Outcome::Done(Err(e)) if e.is_cancelled() => {}
-            Outcome::Done(Err(e)) => {
-                let kept = if self.model.is_some() { " Your scene is unchanged." } else { "" };
-                self.fail(format!("{}{kept}", sentence(&e.to_string())));
-            }
-            Outcome::Died => self.fail(format!("Can't open {name}: the loader failed. Please report this file.")),
-        }
-        self.loading = None;
-    }
-
-    fn opened(&mut self, name: &str, model: Model) {
-        self.settings.opened(name);
-        self.camera = CameraSpec::or_first(self.first_camera.take().as_ref(), &model.scene, &model.geometry, self.aspect());
-        (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
-        (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
-        (self.picking, self.picked) = (None, None);
-        self.kept.clear();
-        self.timings = Timings::default();
-        self.range = None;
-        self.renderer.clear();
-        self.model = Some(model);
-        self.choose();
-    }
-
-    fn advance_build(&mut self) {
-        let Some(building) = &self.building else { return };
-        let name = building.key.entry.name;
-        match building.job.poll() {
-            Outcome::Running => return,
-            Outcome::Done(Ok(built)) => {
-                self.kept.keep(built.clone());
-                self.timings.built(&built);
-                self.show(built);
-            }
-            Outcome::Done(Err(BuildError::Cancelled(_))) => {}
-            Outcome::Done(Err(BuildError::Memory { .. })) if self.kept.drop_oldest(self.shown.as_ref().map(|b| &b.key)) => {
-                self.building = None;
-                return self.choose(); // there is room for it now, or one more can go
-            }
-            Outcome::Done(Err(e)) => {
-                self.fail(format!("Can't build {name}: {}", sentence(&e.to_string())));
-                self.cancel_build();
-            }
-            Outcome::Died => {
-                self.fail(format!("Can't build {name}: the builder failed. Please report this model."));
-                self.cancel_build();
-            }
-        }
-        self.building = None;
-    }
-
-    fn advance_statistics(&mut self) {
-        let Some((key, job)) = &self.counting else { return };
-        match job.poll() {
-            Outcome::Running => return,
-            Outcome::Done(Ok(stats)) => {
-                let stats = Arc::new(stats);
-                self.kept.add_stats(key, &stats);
-                if let Some(shown) = self.shown.as_mut().filter(|b| b.key == *key) {
-                    shown.stats = Some(stats);
-                }
-                self.clamp_depth();
-            }
-            Outcome::Done(Err(_)) | Outcome::Died => {}
-        }
-        self.counting = None;
-    }
-
-    fn advance_measuring(&mut self) {
-        let Some(job) = &self.measuring else { return };
-        match job.poll() {
-            Outcome::Running => return,
-            Outcome::Done(Ok(measured)) => {
-                measured.built.iter().for_each(|built| self.kept.keep(built.clone()));
-                if let Some(shown) = &self.shown {
-                    let _ = self.kept.take_up(&shown.key);
-                }
-                self.timings.measured(&measured);
-            }
-            Outcome::Done(Err(_)) => {}
-            Outcome::Died => self.fail("Can't measure: the measurement failed.".to_owned()),
-        }
-        self.measuring = None;
-    }
-
-    /// Asks for a picture if what is to be seen has changed, and takes the newest.
-    fn refresh_picture(&mut self) {
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        let number = self.requested.as_ref().map_or(0, |a| a.number);
-        let [width, height] = self.size_px;
-        let (mode, max_samples) = (self.settings.mode, self.settings.max_samples);
-        let asked = Asked {
-            number,
-            key: shown.key.clone(),
-            model: self.generation,
-            camera: self.camera,
-            mode,
-            range: self.range,
-            size_px: self.size_px,
-            max_samples,
-        };
-        if self.requested.as_ref() != Some(&asked) && width > 0 && height > 0 {
-            let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-            let job = render::Job { scene, accel, camera: self.camera, mode };
-            let number = self.renderer.request(Request { job, width, height, max_samples, range: self.range });
-            self.requested = Some(Asked { number, ..asked });
-        }
-        if let Some(picture) = self.renderer.picture() {
-            self.say_what_changed(&picture);
-            self.picture = Some(picture);
-        }
-    }
-
-    /// The structure on the screen, and what a ray visits in it, if its picture is there.
-    fn nodes_per_ray(&self) -> Option<(&'static str, f64)> {
-        let (shown, asked, picture) = (self.shown.as_ref()?, self.requested.as_ref()?, self.picture.as_ref()?);
-        let counted = picture.progress.counted;
-        let its = asked.key == shown.key && asked.number == picture.request && counted > 0;
-        its.then(|| (shown.key.entry.name, picture.progress.counts.nodes as f64 / counted as f64))
-    }
-
-    /// `k-d tree: 38.1 nodes/ray (BVH: 21.4)`, since the pictures are equal.
-    fn say_what_changed(&mut self, picture: &Picture) {
-        let counted = picture.progress.counted > 0 && self.requested.as_ref().is_some_and(|a| a.number == picture.request);
-        if counted
-            && let Some((before, nodes_before)) = self.before.take()
-            && let Some(shown) = &self.shown
-        {
-            let nodes = picture.progress.counts.nodes as f64 / picture.progress.counted as f64;
-            let number = super::format::number;
-            let text = format!("{}: {} nodes/ray ({before}: {})", shown.key.entry.name, number(nodes), number(nodes_before));
-            self.change = Some((text, Instant::now() + CHANGE_SHOWN));
-        }
-    }
-
-    /// Takes finished boxes, and starts collecting if the view or the settings have changed since.
-    fn refresh_overlay(&mut self) {
-        if let Some((wanted, key, job)) = self.collecting.take() {
-            match job.poll() {
-                Outcome::Running => self.collecting = Some((wanted, key, job)),
-                Outcome::Done(Ok(mut collected)) => {
-                    self.generation += 1;
-                    let overlay = std::mem::take(&mut collected.overlay);
-                    let selected = self.picked.as_ref().and_then(|p| p.leaf);
-                    self.overlay = Some(Arc::new(Overlay { generation: self.generation, selected, ..overlay }));
-                    self.collected = collected;
-                    self.collected_for = Some((wanted, key));
-                }
-                Outcome::Done(Err(_)) | Outcome::Died => self.collected_for = Some((wanted, key)),
-            }
-        }
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        let view = View::new(&self.camera, model.geometry.space(), self.aspect());
-        let wanted = Wanted { settings: self.settings.overlay, view, size_px: self.size_px, limit: self.box_limit };
-        let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
-        self.overlay_is_current = current;
-        if current || self.collecting.is_some() || self.measuring.is_some() {
-            return;
-        }
-        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), wanted.clone()) {
-            self.collecting = Some((wanted, shown.key.clone(), job));
-        }
     }
 
     /// How the shown structure's cells relate.
     pub fn layout(&self) -> Option<cell::Layout> {
         self.shown.as_ref().map(|b| b.accel.layout())
     }
-}
-
-/// A message with its full stop.
-fn sentence(text: &str) -> String {
-    if text.ends_with(['.', '!', '?']) { text.to_owned() } else { format!("{text}.") }
 }

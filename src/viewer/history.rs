@@ -1,0 +1,153 @@
+//! What can be taken back: the camera's moves, and the choices of structure, parameters, selection
+//! and visibility. The two histories know nothing of each other (Alt+Left/Right, Ctrl+Z).
+
+use std::time::{Duration, Instant};
+
+use super::command::Command;
+use super::pick::Picked;
+use super::settings::{OverlaySettings, Settings};
+use crate::geometry::tri::TestKind;
+
+/// The most steps that are remembered.
+const LIMIT: usize = 200;
+/// Changes of one kind that follow each other faster are one step: a drag is taken back whole.
+const TOGETHER: Duration = Duration::from_millis(600);
+
+/// States that were left, and states that were gone back from.
+#[derive(Debug)]
+pub struct History<T> {
+    behind: Vec<T>,
+    ahead: Vec<T>,
+    /// What kind of change was last made, and when.
+    last: Option<(Kind, Instant)>,
+}
+
+/// Changes of the same kind in quick succession belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// By dragging, the wheel or held keys.
+    Hand,
+    /// By one command, always a step of its own.
+    Single,
+    /// Moving a slider of a parameter.
+    Params,
+    /// Moving a slider of the overlay.
+    Overlay,
+}
+
+impl<T> Default for History<T> {
+    fn default() -> Self {
+        Self { behind: Vec::new(), ahead: Vec::new(), last: None }
+    }
+}
+
+impl<T> History<T> {
+    /// Remembers the present state, which is about to be left by a change of some kind at `now`.
+    pub fn leave(&mut self, present: T, kind: Kind, now: Instant) {
+        let together = self.last.is_some_and(|(last, at)| last == kind && now.duration_since(at) < TOGETHER);
+        self.last = (kind != Kind::Single).then_some((kind, now));
+        self.ahead.clear();
+        if !together {
+            if self.behind.len() == LIMIT {
+                self.behind.remove(0);
+            }
+            self.behind.push(present);
+        }
+    }
+
+    /// The state before, the present one being kept ahead.
+    pub fn back(&mut self, present: T) -> Option<T> {
+        let before = self.behind.pop()?;
+        self.ahead.push(present);
+        self.last = None;
+        Some(before)
+    }
+
+    /// The state that was gone back from.
+    pub fn forward(&mut self, present: T) -> Option<T> {
+        let after = self.ahead.pop()?;
+        self.behind.push(present);
+        self.last = None;
+        Some(after)
+    }
+
+    /// Whether there is a state before.
+    pub const fn has_back(&self) -> bool {
+        !self.behind.is_empty()
+    }
+
+    /// Whether there is a state ahead.
+    pub const fn has_forward(&self) -> bool {
+        !self.ahead.is_empty()
+    }
+}
+
+/// What Ctrl+Z brings back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choices {
+    structure: String,
+    params: std::collections::BTreeMap<String, std::collections::BTreeMap<String, String>>,
+    test: TestKind,
+    overlay: OverlaySettings,
+    /// What is selected.
+    pub picked: Option<Picked>,
+}
+
+impl Choices {
+    /// As they are.
+    pub fn of(settings: &Settings, picked: Option<&Picked>) -> Self {
+        Self {
+            structure: settings.structure.clone(),
+            params: settings.params.clone(),
+            test: settings.test,
+            overlay: settings.overlay,
+            picked: picked.cloned(),
+        }
+    }
+
+    /// Back into the settings; the selection is the caller's.
+    pub fn restore(&self, settings: &mut Settings) {
+        settings.structure.clone_from(&self.structure);
+        settings.params.clone_from(&self.params);
+        settings.test = self.test;
+        settings.overlay = self.overlay;
+    }
+
+    /// The kind of change that a command makes to them, if it makes one at once.
+    pub const fn changed_by(command: &Command) -> Option<Kind> {
+        match command {
+            Command::Structure(_) | Command::Test(_) => Some(Kind::Single),
+            Command::Params(_) => Some(Kind::Params),
+            Command::Overlay(_) => Some(Kind::Overlay),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drag_is_one_step_and_a_new_change_forgets_what_was_ahead() {
+        let start = Instant::now();
+        let at = |ms| start + Duration::from_millis(ms);
+        let mut history = History::default();
+        history.leave(0, Kind::Hand, at(0));
+        history.leave(1, Kind::Hand, at(16));
+        history.leave(2, Kind::Hand, at(2000));
+        assert_eq!((history.back(3), history.back(2), history.back(0)), (Some(2), Some(0), None));
+        assert_eq!((history.forward(0), history.forward(2)), (Some(2), Some(3)));
+        assert_eq!(history.back(3), Some(2));
+        history.leave(2, Kind::Single, at(2001));
+        assert!(!history.has_forward() && history.has_back());
+    }
+
+    #[test]
+    fn it_forgets_the_oldest_first() {
+        let mut history = History::default();
+        (0..=LIMIT).for_each(|i| history.leave(i, Kind::Single, Instant::now()));
+        let oldest = std::iter::from_fn(|| history.back(0)).last();
+        assert_eq!(oldest, Some(1));
+    }
+}

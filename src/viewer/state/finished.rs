@@ -1,0 +1,155 @@
+//! What follows from a job that has finished: loading, building, statistics, picking, measuring.
+
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use std::time::Instant;
+
+use super::State;
+use crate::accel::BuildError;
+use crate::job::Outcome;
+use crate::scene::CameraSpec;
+use crate::viewer::history::{Choices, History, Kind};
+use crate::viewer::model::Model;
+use crate::viewer::timings::Timings;
+use crate::viewer::workers;
+
+impl State {
+    pub(super) fn advance_dialog(&mut self) {
+        match self.asked_for_file.as_ref().map(Receiver::try_recv) {
+            Some(Ok(path)) => {
+                self.asked_for_file = None;
+                if let Some(path) = path {
+                    self.open(path.to_string_lossy().into_owned());
+                }
+            }
+            Some(Err(std::sync::mpsc::TryRecvError::Disconnected)) => self.asked_for_file = None,
+            _ => {}
+        }
+    }
+
+    pub(super) fn advance_load(&mut self) {
+        let Some((name, job)) = &self.loading else { return };
+        if self.size_px == [0, 0] {
+            return; // the first view is made for the viewport, and the first frame says how large it is
+        }
+        let name = name.clone();
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(model)) => self.opened(&name, model),
+            Outcome::Done(Err(e)) if e.is_cancelled() => {}
+            Outcome::Done(Err(e)) => {
+                let kept = if self.model.is_some() { " Your scene is unchanged." } else { "" };
+                self.fail(format!("{}{kept}", sentence(&e.to_string())));
+            }
+            Outcome::Died => self.fail(format!("Can't open {name}: the loader failed. Please report this file.")),
+        }
+        self.loading = None;
+    }
+
+    fn opened(&mut self, name: &str, model: Model) {
+        self.settings.opened(name);
+        self.camera = CameraSpec::or_first(self.first_camera.take().as_ref(), &model.scene, &model.geometry, self.aspect());
+        (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
+        (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
+        (self.picking, self.picked) = (None, None);
+        (self.seen, self.counted) = (None, None);
+        (self.cameras, self.choices) = (History::default(), History::default());
+        self.kept.clear();
+        self.timings = Timings::default();
+        self.range = None;
+        self.renderer.clear();
+        self.model = Some(model);
+        self.choose();
+    }
+
+    pub(super) fn advance_build(&mut self) {
+        let Some(building) = &self.building else { return };
+        let name = building.key.entry.name;
+        match building.job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(built)) => {
+                self.kept.keep(built.clone());
+                self.timings.built(&built);
+                self.show(built);
+            }
+            Outcome::Done(Err(BuildError::Cancelled(_))) => {}
+            Outcome::Done(Err(BuildError::Memory { .. })) if self.kept.drop_oldest(self.shown.as_ref().map(|b| &b.key)) => {
+                self.building = None;
+                return self.choose(); // there is room for it now, or one more can go
+            }
+            Outcome::Done(Err(e)) => {
+                self.fail(format!("Can't build {name}: {}", sentence(&e.to_string())));
+                self.cancel_build();
+            }
+            Outcome::Died => {
+                self.fail(format!("Can't build {name}: the builder failed. Please report this model."));
+                self.cancel_build();
+            }
+        }
+        self.building = None;
+    }
+
+    pub(super) fn advance_statistics(&mut self) {
+        let Some((key, job)) = &self.counting else { return self.count() };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(stats)) => {
+                let stats = Arc::new(stats);
+                self.kept.add_stats(key, &stats);
+                if let Some(shown) = self.shown.as_mut().filter(|b| b.key == *key) {
+                    shown.stats = Some(stats);
+                }
+                self.clamp_depth();
+            }
+            Outcome::Done(Err(_)) | Outcome::Died => {}
+        }
+        self.counting = None;
+    }
+
+    /// Works out the figures of the shown structure, once a picture of it is on the screen.
+    fn count(&mut self) {
+        let Some(shown) = &self.shown else { return };
+        let wanted = shown.stats.is_none() && self.counted.as_ref() != Some(&shown.key);
+        if wanted && self.seen.as_ref() == Some(&shown.key) && self.measuring.is_none() {
+            self.counted = Some(shown.key.clone());
+            self.counting = workers::count(&self.shared, shown).ok();
+        }
+    }
+
+    pub(super) fn advance_picking(&mut self) {
+        let Some(job) = &self.picking else { return };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(picked) => {
+                if picked != self.picked {
+                    self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
+                }
+                self.select(picked);
+            }
+            Outcome::Died => {}
+        }
+        self.picking = None;
+    }
+
+    pub(super) fn advance_measuring(&mut self) {
+        let Some(job) = &self.measuring else { return };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(measured)) => {
+                measured.built.iter().for_each(|built| self.kept.keep(built.clone()));
+                if let Some(shown) = &self.shown {
+                    let _ = self.kept.take_up(&shown.key);
+                }
+                self.timings.measured(&measured);
+            }
+            Outcome::Done(Err(_)) => {}
+            Outcome::Died => self.fail("Can't measure: the measurement failed.".to_owned()),
+        }
+        self.measuring = None;
+    }
+}
+
+/// A message with its full stop.
+pub(super) fn sentence(text: &str) -> String {
+    if text.ends_with(['.', '!', '?']) { text.to_owned() } else { format!("{text}.") }
+}

@@ -1,0 +1,98 @@
+//! The picture and the boxes over it: asked for anew whenever what is to be seen has changed.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::{Asked, CHANGE_SHOWN, State};
+use crate::job::Outcome;
+use crate::render::{self, Picture, Request};
+use crate::viewer::gpu::{Overlay, View};
+use crate::viewer::overlay::Wanted;
+use crate::viewer::{format, workers};
+
+impl State {
+    /// Asks for a picture if what is to be seen has changed, and takes the newest.
+    pub(super) fn refresh_picture(&mut self) {
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
+        let number = self.requested.as_ref().map_or(0, |a| a.number);
+        let [width, height] = self.size_px;
+        let (mode, max_samples) = (self.settings.mode, self.settings.max_samples);
+        let asked = Asked {
+            number,
+            key: shown.key.clone(),
+            model: self.generation,
+            camera: self.camera,
+            mode,
+            range: self.range,
+            size_px: self.size_px,
+            max_samples,
+        };
+        if self.requested.as_ref() != Some(&asked) && width > 0 && height > 0 {
+            let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
+            let job = render::Job { scene, accel, camera: self.camera, mode };
+            let number = self.renderer.request(Request { job, width, height, max_samples, range: self.range });
+            self.requested = Some(Asked { number, ..asked });
+        }
+        if let Some(picture) = self.renderer.picture() {
+            self.say_what_changed(&picture);
+            if let Some(asked) = self.requested.as_ref().filter(|a| a.number == picture.request)
+                && self.seen.as_ref() != Some(&asked.key)
+            {
+                self.seen = Some(asked.key.clone());
+            }
+            self.picture = Some(picture);
+        }
+    }
+
+    /// The structure on the screen, and what a ray visits in it, if its picture is there.
+    pub(super) fn nodes_per_ray(&self) -> Option<(&'static str, f64)> {
+        let (shown, asked, picture) = (self.shown.as_ref()?, self.requested.as_ref()?, self.picture.as_ref()?);
+        let counted = picture.progress.counted;
+        let its = asked.key == shown.key && asked.number == picture.request && counted > 0;
+        its.then(|| (shown.key.entry.name, picture.progress.counts.nodes as f64 / counted as f64))
+    }
+
+    /// `k-d tree: 38.1 nodes/ray (BVH: 21.4)`, since the pictures are equal.
+    fn say_what_changed(&mut self, picture: &Picture) {
+        let counted = picture.progress.counted > 0 && self.requested.as_ref().is_some_and(|a| a.number == picture.request);
+        if counted
+            && let Some((before, nodes_before)) = self.before.take()
+            && let Some(shown) = &self.shown
+        {
+            let nodes = picture.progress.counts.nodes as f64 / picture.progress.counted as f64;
+            let number = format::number;
+            let text = format!("{}: {} nodes/ray ({before}: {})", shown.key.entry.name, number(nodes), number(nodes_before));
+            self.change = Some((text, Instant::now() + CHANGE_SHOWN));
+        }
+    }
+
+    /// Takes finished boxes, and starts collecting if the view or the settings have changed since.
+    pub(super) fn refresh_overlay(&mut self) {
+        if let Some((wanted, key, job)) = self.collecting.take() {
+            match job.poll() {
+                Outcome::Running => self.collecting = Some((wanted, key, job)),
+                Outcome::Done(Ok(mut collected)) => {
+                    self.generation += 1;
+                    let overlay = std::mem::take(&mut collected.overlay);
+                    let selected = self.picked.as_ref().and_then(|p| p.leaf);
+                    self.overlay = Some(Arc::new(Overlay { generation: self.generation, selected, ..overlay }));
+                    self.collected = collected;
+                    self.collected_for = Some((wanted, key));
+                }
+                Outcome::Done(Err(_)) | Outcome::Died => self.collected_for = Some((wanted, key)),
+            }
+        }
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
+        let view = View::new(&self.camera, model.geometry.space(), self.aspect());
+        let wanted = Wanted { settings: self.settings.overlay, view, size_px: self.size_px, limit: self.box_limit };
+        let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
+        self.overlay_is_current = current;
+        let seen = self.seen.as_ref() == Some(&shown.key);
+        if current || !seen || self.collecting.is_some() || self.measuring.is_some() {
+            return;
+        }
+        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), wanted.clone()) {
+            self.collecting = Some((wanted, shown.key.clone(), job));
+        }
+    }
+}
