@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use crate::geometry::{Aabb, Axis};
 use crate::scene::PrimRef;
+use glam::Vec3;
 
 /// Names a cell within its structure; `instance` is 0 where there is no top level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -21,24 +22,49 @@ pub struct CellId {
 pub enum Shape {
     /// A box with faces parallel to the axes.
     Box(Aabb),
+    /// Something convex of another form.
+    Convex {
+        /// The tightest box around it.
+        bounds: Aabb,
+        /// The area of its surface.
+        area: f64,
+    },
 }
 
 impl Shape {
     /// The tightest box around it.
     pub const fn bounds(&self) -> &Aabb {
         match self {
-            Self::Box(b) => b,
+            Self::Box(bounds) | Self::Convex { bounds, .. } => bounds,
+        }
+    }
+
+    /// The area of its surface: what the chance of a random line to meet it goes by.
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Box(bounds) => bounds.area(),
+            Self::Convex { area, .. } => *area,
         }
     }
 }
 
-/// The plane that divides a cell.
+/// The plane that divides a cell, in the scaled space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Split {
-    /// The axis it is perpendicular to.
-    pub axis: Axis,
-    /// Where it crosses the axis, in the scaled space.
-    pub pos: f32,
+pub enum Split {
+    /// Perpendicular to an axis.
+    Axis {
+        /// Which one.
+        axis: Axis,
+        /// Where it crosses the axis.
+        pos: f32,
+    },
+    /// Anywhere: the points p with `normal . p = offset`.
+    Plane {
+        /// Of unit length, within rounding.
+        normal: Vec3,
+        /// Its distance from the origin, along the normal.
+        offset: f32,
+    },
 }
 
 /// What a cell holds.

@@ -19,6 +19,10 @@ pub enum Family {
     KdTree,
     /// Grids.
     Grid,
+    /// Octrees.
+    Octree,
+    /// Binary space partitions with planes of any direction.
+    Bsp,
 }
 
 /// How a structure is built.

@@ -76,7 +76,7 @@ impl Stats {
             if stats.nodes.is_multiple_of(4096) {
                 cancelled = cancel.check();
             }
-            let area = cell.shape.bounds().area();
+            let area = cell.shape.area();
             if cell.is_leaf() {
                 let prims = cell.prims();
                 stats.leaf(cell.depth, prims);
@@ -87,7 +87,7 @@ impl Stats {
             if cancelled.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(Descend::Yes) }
         });
         cancelled?;
-        let root = cells.root().shape.bounds().area();
+        let root = cells.root().shape.area();
         stats.sah = if root > 0.0 { cost / root } else { 0.0 };
         Ok(stats)
     }

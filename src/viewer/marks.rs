@@ -12,6 +12,8 @@ pub fn of(ui: &Ui, family: Family) -> Mark {
         Family::Bvh => palette.bvh,
         Family::KdTree => palette.kd,
         Family::Grid => palette.grid,
+        Family::Octree => palette.octree,
+        Family::Bsp => palette.bsp,
         Family::Brute => palette.brute,
     }
 }

@@ -8,7 +8,7 @@ use super::settings::OverlaySettings;
 use super::theme;
 use crate::accel::Accel;
 use crate::accel::cell::{Cell, CellKind, Descend, Layout, Split, walk};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Axis};
 use crate::task::{Cancel, Cancelled};
 
 /// What an overlay is made for.
@@ -97,13 +97,13 @@ impl Collector<'_> {
                 self.found.push(Found { px, depth: cell.depth, bounds, plane: false });
             }
         }
-        if let Some(split) = cell.split
+        if let Some(Split::Axis { axis, pos }) = cell.split
             && s.planes
             && (s.from_depth..=s.depth).contains(&cell.depth)
         {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found { px, depth: cell.depth, bounds: plane_in(&bounds, split), plane: true });
+                self.found.push(Found { px, depth: cell.depth, bounds: plane_in(&bounds, axis, pos), plane: true });
             }
         }
         let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
@@ -154,10 +154,9 @@ impl Collector<'_> {
 }
 
 /// The part of a plane that lies in a cell, as a flat box.
-fn plane_in(cell: &Aabb, split: Split) -> Aabb {
+fn plane_in(cell: &Aabb, axis: Axis, pos: f32) -> Aabb {
     let mut plane = *cell;
-    let axis = split.axis.index();
-    plane.min[axis] = split.pos;
-    plane.max[axis] = split.pos;
+    plane.min[axis.index()] = pos;
+    plane.max[axis.index()] = pos;
     plane
 }

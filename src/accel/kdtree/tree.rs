@@ -115,7 +115,7 @@ impl<T: TriTest> KdTree<T> {
         let (split, kind) = if n.is_leaf() {
             (None, CellKind::Leaf { prims: n.count() })
         } else {
-            (Some(Split { axis: Axis::ALL[n.axis()], pos: n.pos() }), CellKind::Inner)
+            (Some(Split::Axis { axis: Axis::ALL[n.axis()], pos: n.pos() }), CellKind::Inner)
         };
         Cell { id: CellId { instance: 0, node }, depth, shape: Shape::Box(bounds), split, kind }
     }
