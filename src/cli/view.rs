@@ -47,6 +47,9 @@ pub struct Args {
     /// Measure every structure before the picture is saved.
     #[arg(long, requires = "screenshot")]
     pub measure: bool,
+    /// Turn the camera and switch structures before that, and say how soon pictures followed.
+    #[arg(long, requires = "screenshot")]
+    pub pace: bool,
     #[command(flatten)]
     pub look: LookArgs,
     #[command(flatten)]
@@ -70,6 +73,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         theme,
         size: args.size.map(|size| [size.width as f32, size.height as f32]),
         measure: args.measure,
+        pace: args.pace,
         screenshot: args.screenshot,
         threads: args.machine.threads,
         memory_bytes: args.machine.memory.map(|mib| mib << 20),

@@ -71,7 +71,7 @@ impl App {
         let mut state = State::new(settings, shared, dialog, box_limit)?;
         state.first_camera = options.camera;
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
-        let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, options.measure));
+        let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, options.measure, options.pace));
         let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout: 0 };
         app.follow_settings(&cc.egui_ctx);
         Ok(app)
@@ -193,7 +193,7 @@ impl eframe::App for App {
         self.carry_out(ctx);
         self.state.advance();
         if let Some(screenshot) = &mut self.screenshot {
-            screenshot.advance(ctx, &self.state, &self.pace, &mut self.commands);
+            screenshot.advance(ctx, &self.state, &mut self.pace, &mut self.commands);
         }
         // Progress bars move; everything else wakes the window itself.
         if self.state.loading.is_some() || self.state.building.is_some() || self.state.measuring.is_some() {

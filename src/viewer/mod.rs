@@ -16,6 +16,7 @@ mod overlay;
 mod pace;
 pub mod panels;
 mod pick;
+mod rehearsal;
 mod screenshot;
 pub mod settings;
 pub mod state;

@@ -31,6 +31,8 @@ pub struct ViewerOptions {
     pub size: Option<[f32; 2]>,
     /// Measure every structure once the picture is there; only with `screenshot`.
     pub measure: bool,
+    /// Turn the camera and switch structures before that, to see how soon pictures follow.
+    pub pace: bool,
     /// Save a picture of the window here once everything is there, and close.
     pub screenshot: Option<PathBuf>,
     /// Threads that load, build and measure; 0 for one a core.

@@ -1,10 +1,11 @@
 //! How fast the window answers: its longest frame, and how soon a picture follows a click.
 
 use super::format;
-use super::state::State;
+use super::state::{Answer, State};
+use crate::lab::statistics::median;
 
 /// What a scripted window says of itself at the end.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Pace {
     /// The longest frame while something was loaded or built, in seconds of the window's thread.
     longest_busy: f64,
@@ -12,8 +13,12 @@ pub struct Pace {
     longest: f64,
     /// Frames drawn.
     frames: u64,
-    /// The first picture of all: seconds after its structure was shown, and its coarseness.
-    first: Option<(f64, u32)>,
+    /// The first picture of all.
+    first: Option<Answer>,
+    /// How soon the first picture came after each change of the camera.
+    turns: Vec<Answer>,
+    /// The same for switches to structures that are kept.
+    switches: Vec<Answer>,
     /// Seconds to the first picture of full resolution.
     full: Option<f64>,
 }
@@ -27,20 +32,29 @@ impl Pace {
         if state.loading.is_some() || state.building.is_some() {
             self.longest_busy = self.longest_busy.max(secs);
         }
-        if let Some(p) = state.picture.as_ref().map(|p| p.progress) {
-            self.first.get_or_insert((p.secs, p.step));
-            if p.step == 1 {
-                self.full.get_or_insert(p.secs);
-            }
+        self.first = self.first.or(state.answer);
+        if let Some(p) = state.picture.as_ref().map(|p| p.progress)
+            && p.step == 1
+        {
+            self.full.get_or_insert(p.secs);
         }
+    }
+
+    /// Takes note of the answer to a change of the camera.
+    pub fn turned(&mut self, answer: Answer) {
+        self.turns.push(answer);
+    }
+
+    /// Takes note of the answer to a switch to a kept structure.
+    pub fn switched(&mut self, answer: Answer) {
+        self.switches.push(answer);
     }
 
     /// The same in words.
     pub fn report(&self, state: &State) -> String {
         let load = state.model.as_ref().map(|m| format!("loaded in {}; ", format::duration(m.load_secs))).unwrap_or_default();
         let build = state.shown.as_ref().map(|b| format!("{} built in {}; ", b.key.entry.id, format::duration(b.build_secs)));
-        let first =
-            self.first.map(|(secs, step)| format!("first picture (1/{step} resolution) {} later; ", format::duration(secs)));
+        let first = self.first.map(|a| format!("first picture (1/{} resolution) {} later; ", a.step, format::duration(a.secs)));
         let full = self.full.map(|secs| format!("one sample a pixel after {}; ", format::duration(secs)));
         let frames = format!(
             "longest frame {} while loading or building, {} in all, of {}",
@@ -48,6 +62,22 @@ impl Pace {
             format::duration(self.longest),
             format::count(self.frames)
         );
-        format!("{load}{}{}{}{frames}", build.unwrap_or_default(), first.unwrap_or_default(), full.unwrap_or_default())
+        let turns = answers("after a turn of the camera", &self.turns);
+        let switches = answers("after a switch to a kept structure", &self.switches);
+        format!(
+            "{load}{}{}{}{turns}{switches}{frames}",
+            build.unwrap_or_default(),
+            first.unwrap_or_default(),
+            full.unwrap_or_default()
+        )
     }
+}
+
+/// The median and the longest of some answers.
+fn answers(what: &str, answers: &[Answer]) -> String {
+    let Some(coarsest) = answers.iter().map(|a| a.step).max() else { return String::new() };
+    let secs: Vec<f64> = answers.iter().map(|a| a.secs).collect();
+    let longest = secs.iter().copied().fold(0.0, f64::max);
+    let (usual, longest, n) = (format::duration(median(&secs)), format::duration(longest), secs.len());
+    format!("{what} {usual}, at most {longest} (n = {n}, 1/{coarsest} resolution or finer); ")
 }

@@ -11,6 +11,7 @@ use eframe::egui::{ColorImage, Context, ScreenshotCallback, ViewportCommand};
 use super::command::Command;
 use super::pace::Pace;
 use super::panels::Commands;
+use super::rehearsal::Rehearsal;
 use super::state::State;
 use crate::sys::{folder_of, temporary_in};
 
@@ -19,6 +20,7 @@ use crate::sys::{folder_of, temporary_in};
 pub struct Screenshot {
     path: PathBuf,
     measure: bool,
+    rehearsal: Option<Rehearsal>,
     stage: Stage,
     start: Instant,
     /// The picture, once the window has it.
@@ -29,6 +31,8 @@ pub struct Screenshot {
 enum Stage {
     /// Loading, building, tracing.
     Settling,
+    /// Turning the camera, switching structures.
+    Rehearsing,
     /// Timing every structure.
     Measuring,
     /// Frames in which nothing is left to do; a few, so that the last one is on the screen.
@@ -44,16 +48,23 @@ const STILL_FRAMES: u32 = 4;
 const PATIENCE: Duration = Duration::from_secs(600);
 
 impl Screenshot {
-    /// A picture for `path`, after measuring if `measure`.
-    pub fn new(path: PathBuf, measure: bool) -> Self {
-        Self { path, measure, stage: Stage::Settling, start: Instant::now(), taken: Arc::default() }
+    /// A picture for `path`, after measuring and trying how soon the window answers, if asked for.
+    pub fn new(path: PathBuf, measure: bool, pace: bool) -> Self {
+        let rehearsal = pace.then(Rehearsal::default);
+        Self { path, measure, rehearsal, stage: Stage::Settling, start: Instant::now(), taken: Arc::default() }
     }
 
     /// Looks whether it is time, once a frame.
-    pub fn advance(&mut self, ctx: &Context, state: &State, pace: &Pace, commands: &mut Commands) {
+    pub fn advance(&mut self, ctx: &Context, state: &State, pace: &mut Pace, commands: &mut Commands) {
         ctx.request_repaint_after(Duration::from_millis(20));
         let settled = (!state.is_busy() && (state.shown.is_some() || state.error.is_some())) || self.start.elapsed() > PATIENCE;
         match self.stage {
+            Stage::Settling if settled && self.rehearsal.is_some() => self.stage = Stage::Rehearsing,
+            Stage::Rehearsing => {
+                if self.rehearsal.as_mut().is_none_or(|r| r.advance(state, pace, commands)) {
+                    (self.rehearsal, self.stage) = (None, Stage::Settling);
+                }
+            }
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
                 self.stage = Stage::Measuring;

@@ -155,7 +155,7 @@ fn the_camera_has_a_history_of_its_own() {
 
 #[test]
 fn choices_are_taken_back_and_made_again() {
-    let mut w = Window::lecture();
+    let mut w = teapot();
     let redo = Modifiers::COMMAND | Modifiers::SHIFT;
     let shown = |w: &Window| w.state().shown.as_ref().map(|b| (b.key.entry.id, b.key.params.clone()));
     let first = shown(&w);
@@ -175,7 +175,7 @@ fn choices_are_taken_back_and_made_again() {
     w.settle();
     assert_eq!(shown(&w), larger);
 
-    w.drag(w.viewport().center(), vec2(0.0, 0.0), PointerButton::Primary, Modifiers::NONE);
+    w.press_in_one_frame(w.viewport().center());
     w.until("a selection", |s| s.picked.is_some());
     w.key(Modifiers::COMMAND, Key::Z);
     assert!(w.state().picked.is_none());

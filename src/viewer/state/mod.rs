@@ -60,6 +60,8 @@ pub struct State {
     pub cameras: History<Camera>,
     /// Choices of structure, parameters, selection and visibility, which can be taken back.
     pub choices: History<Choices>,
+    /// The first picture of what was last asked for, once it is there.
+    pub answer: Option<Answer>,
     /// What the last switch of structures changed, and until when it is said.
     pub change: Option<(String, Instant)>,
     /// The field for a path is open, with this in it.
@@ -93,6 +95,7 @@ pub struct State {
     picking: Option<Picking>,
     renderer: Renderer,
     requested: Option<Asked>,
+    requested_at: Instant,
     /// Nodes a ray of the structure shown before, to be compared once the new one is counted.
     before: Option<(&'static str, f64)>,
     generation: u64,
@@ -110,6 +113,17 @@ struct Asked {
     range: Option<Range>,
     size_px: [u32; 2],
     max_samples: u32,
+}
+
+/// How soon the first picture of a request was there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer {
+    /// Which request.
+    pub request: u64,
+    /// Seconds from the frame that asked to the one that has it.
+    pub secs: f64,
+    /// One pixel for so many on each axis.
+    pub step: u32,
 }
 
 impl State {
@@ -136,6 +150,7 @@ impl State {
             timings: Timings::default(),
             picked: None,
             error: None,
+            answer: None,
             cameras: History::default(),
             choices: History::default(),
             change: None,
@@ -158,6 +173,7 @@ impl State {
             picking: None,
             renderer,
             requested: None,
+            requested_at: Instant::now(),
             before: None,
             generation: 0,
             shared,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::{Asked, CHANGE_SHOWN, State};
+use super::{Answer, Asked, CHANGE_SHOWN, State};
 use crate::job::Outcome;
 use crate::render::{self, Picture, Request};
 use crate::viewer::gpu::{Overlay, View};
@@ -32,15 +32,22 @@ impl State {
             let job = render::Job { scene, accel, camera: self.camera, mode };
             let number = self.renderer.request(Request { job, width, height, max_samples, range: self.range });
             self.requested = Some(Asked { number, ..asked });
+            self.requested_at = Instant::now();
         }
         if let Some(picture) = self.renderer.picture() {
             self.say_what_changed(&picture);
-            if let Some(asked) = self.requested.as_ref().filter(|a| a.number == picture.request)
-                && self.seen.as_ref() != Some(&asked.key)
-            {
-                self.seen = Some(asked.key.clone());
-            }
+            self.answered(&picture);
             self.picture = Some(picture);
+        }
+    }
+
+    /// Takes note of the first picture of the present request.
+    fn answered(&mut self, picture: &Picture) {
+        let Some(asked) = self.requested.as_ref().filter(|a| a.number == picture.request) else { return };
+        if self.answer.is_none_or(|a| a.request != asked.number) {
+            let secs = self.requested_at.elapsed().as_secs_f64();
+            self.answer = Some(Answer { request: asked.number, secs, step: picture.progress.step });
+            self.seen = Some(asked.key.clone());
         }
     }
 
