@@ -1,10 +1,10 @@
 //! The JSON of a glTF file.
 
-use std::io::{BufReader, Error, Read};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
 
 use gltf::json::Root;
 
-use crate::scene::load::pace::Pace;
 use crate::scene::{LoadCx, Reason};
 use crate::task::Charge;
 
@@ -12,24 +12,21 @@ use crate::task::Charge;
 const OBJECT: u64 = 512;
 /// What an item of a list takes: a value of an extension that nobody knows.
 const ITEM: u64 = 32;
-/// JSON up to this length is parsed in one go, which is faster but cannot be stopped.
+/// JSON up to this length is parsed on the spot, which cannot be stopped.
 const SMALL: usize = 1 << 21;
+/// Time between two looks at the cancel flag while longer JSON is parsed.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// Parses it, and charges the budget for what it becomes.
 pub(super) fn parse(json: &[u8], cx: &LoadCx) -> Result<(Root, Charge), Reason> {
-    cx.progress.start("parse", json.len() as u64);
+    cx.progress.start("parse", 0);
     let mut memory = cx.budget.charge(json.len() as u64)?;
     for piece in json.chunks(1 << 20) {
         cx.cancel.check()?;
         let count = |wanted: u8| piece.iter().filter(|b| **b == wanted).count() as u64;
         memory.grow(count(b'{') * OBJECT + count(b',') * ITEM)?;
     }
-    let parsed = if json.len() <= SMALL {
-        Root::from_slice(json)
-    } else {
-        Root::from_reader(BufReader::new(Paced { rest: json, pace: Pace::new(cx) }))
-    };
-    cx.cancel.check()?;
+    let (parsed, memory) = if json.len() <= SMALL { (Root::from_slice(json), memory) } else { aside(json, memory, cx)? };
     let root = parsed.map_err(|error| {
         let place = format!("JSON, line {} column {}", error.line(), error.column());
         version_1(json).unwrap_or_else(|| Reason::malformed(place, first_clause(&error.to_string())))
@@ -37,17 +34,27 @@ pub(super) fn parse(json: &[u8], cx: &LoadCx) -> Result<(Root, Charge), Reason> 
     Ok((root, memory))
 }
 
-/// Fails once the work is cancelled.
-struct Paced<'a> {
-    rest: &'a [u8],
-    pace: Pace<'a>,
-}
+/// What parsing gives, and the memory it may take.
+type Parsed = (Result<Root, serde_json::Error>, Charge);
 
-impl Read for Paced<'_> {
-    fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
-        let n = self.rest.read(to)?;
-        self.pace.step(n).map_err(Error::other)?;
-        Ok(n)
+/// Parses on a thread of its own. The parser of a slice cannot be stopped, but it can be left alone:
+/// it gives its memory back when it is done. (The parser of a reader could be stopped, and compiles
+/// into this crate, half of which it would be.)
+fn aside(json: &[u8], memory: Charge, cx: &LoadCx) -> Result<Parsed, Reason> {
+    let (sender, receiver) = channel();
+    let copy = json.to_vec();
+    let work = move || {
+        let parsed = Root::from_slice(&copy);
+        let _ = sender.send((parsed, memory)); // nobody listens any more if it was cancelled
+    };
+    let thread = std::thread::Builder::new().name("parse".into()).spawn(work);
+    thread.map_err(|error| Reason::malformed("JSON", format_args!("no thread to parse it on: {error}")))?;
+    loop {
+        match receiver.recv_timeout(LOOK) {
+            Ok(parsed) => return Ok(parsed),
+            Err(RecvTimeoutError::Timeout) => cx.cancel.check()?,
+            Err(RecvTimeoutError::Disconnected) => return Err(Reason::malformed("JSON", "the parser failed")),
+        }
     }
 }
 
