@@ -4,6 +4,7 @@
 
 mod common;
 
+use boxwood::accel::params::{Kind, ParamValues};
 use boxwood::accel::probe::Counts;
 use boxwood::accel::registry::{self, Entry};
 use boxwood::accel::stats::{SahWeights, Stats};
@@ -57,17 +58,35 @@ fn grazes(ray: &Ray, hit: &Hit, geometry: &Geometry) -> bool {
     normal.dot(dir).abs() <= 1e-5 * normal.length() * dir.length()
 }
 
-/// Every structure and both triangle tests on one scene.
+/// Every structure as it comes, and with each choice that it offers: every builder, every switch.
+fn variants() -> Vec<(&'static Entry, ParamValues, String)> {
+    let mut variants = Vec::new();
+    for entry in registry::ALL {
+        variants.push((entry, entry.defaults(), String::new()));
+        for param in entry.params {
+            let Kind::Choice { options } = param.kind else { continue };
+            for option in &options[1..] {
+                let mut params = entry.defaults();
+                params.set(param.id, option).expect("an option");
+                variants.push((entry, params, format!("with {} = {option}", param.id)));
+            }
+        }
+    }
+    variants
+}
+
+/// Every variant of every structure and both triangle tests on one scene.
 fn conforms(triangles: &[[Vec3; 3]], rays: &[Ray], what: &str) -> usize {
     let geometry = geometry_of(&scene_of(triangles));
     let mut near_ties = 0;
     for test in TestKind::ALL {
         let brute = build(&registry::ALL[0], &geometry, test);
         let expected = trace(brute.as_ref(), rays, Mode::Closest);
-        for entry in registry::ALL {
-            let accel = build(entry, &geometry, test);
+        for (entry, params, variant) in variants() {
+            let accel = entry.build(&geometry, test, &params, &BuildCx::unattended(2)).expect("builds");
+            let what = format!("{what} {variant}");
             assert_eq!(validate::defects(accel.as_ref(), &geometry, 3), [], "{} on {what}", entry.id);
-            near_ties += compare(entry, accel.as_ref(), &expected, rays, what);
+            near_ties += compare(entry, accel.as_ref(), &expected, rays, &what);
         }
     }
     near_ties
@@ -117,7 +136,7 @@ fn every_structure_answers_as_brute_does() {
     for (name, triangles) in small_scenes() {
         let rays = rays_for(&triangles, 1800, u64::from(random.bits()));
         near_ties += conforms(&triangles, &rays, name);
-        rays_traced += rays.len() * 2 * (registry::ALL.len() - 1);
+        rays_traced += rays.len() * 2 * (variants().len() - 1);
     }
     println!("near ties: {near_ties} of {rays_traced} rays");
     assert!(near_ties * 10_000 <= rays_traced, "{near_ties} near ties of {rays_traced} rays");
@@ -294,13 +313,11 @@ fn builds_do_not_depend_on_the_number_of_threads() {
     let triangles = soup(20_000, 0.02, 40);
     let geometry = geometry_of(&scene_of(&triangles));
     let rays = rays_for(&triangles, 500, 41);
-    for entry in registry::ALL.iter().filter(|e| e.family != registry::Family::Brute) {
-        let of = |threads| {
-            entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &BuildCx::unattended(threads)).expect("builds")
-        };
+    for (entry, params, variant) in variants().into_iter().filter(|v| v.0.family != registry::Family::Brute) {
+        let of = |threads| entry.build(&geometry, TestKind::Watertight, &params, &BuildCx::unattended(threads)).expect("builds");
         let (one, three) = (of(1), of(3));
         let stats = |a: &dyn Accel| Stats::of(a, SahWeights::default(), &Cancel::new()).expect("not cancelled");
-        assert_eq!(stats(one.as_ref()), stats(three.as_ref()), "{}", entry.id);
+        assert_eq!(stats(one.as_ref()), stats(three.as_ref()), "{} {variant}", entry.id);
         assert_eq!(trace(one.as_ref(), &rays, Mode::Closest), trace(three.as_ref(), &rays, Mode::Closest), "{}", entry.id);
     }
 }
@@ -317,6 +334,12 @@ fn every_switch_gives_the_same_hits() {
         ("bvh", &[("order", "fixed"), ("early_out", "off")]),
         ("bvh", &[("bins", "2"), ("max_leaf", "1")]),
         ("bvh", &[("max_depth", "3")]),
+        ("bvh", &[("builder", "binned"), ("bins", "2"), ("max_leaf", "1")]),
+        ("bvh", &[("builder", "ploc"), ("max_depth", "5"), ("radius", "1")]),
+        ("bvh", &[("builder", "lbvh"), ("max_depth", "9"), ("max_leaf", "64")]),
+        ("bvh", &[("builder", "sbvh"), ("alpha", "0"), ("duplication", "8")]),
+        ("bvh", &[("builder", "sbvh"), ("alpha", "0"), ("reinsertion", "on"), ("reinsertion_gain", "0")]),
+        ("bvh", &[("builder", "median"), ("reinsertion", "on"), ("reinsertion_gain", "0"), ("max_depth", "11")]),
         ("kdtree", &[("max_depth", "4"), ("bins", "2")]),
         ("kdtree", &[("max_leaf", "1"), ("empty_bonus", "0.9"), ("c_isect", "20")]),
         ("grid", &[("density", "0.01")]),

@@ -123,6 +123,8 @@ pub struct MemoryPart {
 pub enum Layout {
     /// Nodes bound their children, which may overlap; every triangle is in one leaf.
     Hierarchy,
+    /// The same, but a triangle may be in several leaves, each of which bounds a part of it.
+    SplitHierarchy,
     /// Cells divide space and do not overlap; a triangle is in every leaf it overlaps.
     Partition,
     /// The same, but all cells are children of the root, and the ray steps from cell to cell.
@@ -147,6 +149,11 @@ pub trait Cells: Send + Sync {
 
     /// How the cells relate.
     fn layout(&self) -> Layout;
+
+    /// What the builder decided by itself, in words for the user; each is one sentence.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// Bytes by part, the shared geometry not counted.
     fn memory(&self) -> Vec<MemoryPart>;

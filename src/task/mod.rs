@@ -5,6 +5,7 @@ mod budget;
 mod cancel;
 mod pool;
 mod progress;
+pub mod sort;
 
 pub use budget::{Budget, Charge, OverBudget};
 pub use cancel::{Cancel, Cancelled};

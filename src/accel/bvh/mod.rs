@@ -1,14 +1,26 @@
 //! The bounding volume hierarchy: a binary tree of boxes.
 //!
-//! [`tree`] holds the nodes and the traversal, [`topdown`] the one top-down build loop, and each
-//! way to choose a split is a file of its own that plugs into it ([`binned`]).
+//! [`tree`] holds the nodes and the traversal. All builders make a [`draft`] of the same nodes:
+//! [`topdown`] is the one top-down loop, into which [`median`], [`binned`], [`sweep`], [`sbvh`] and
+//! [`lbvh`] plug; [`ploc`] works from the leaves up. [`reinsertion`] optimises what any of them made,
+//! and the draft chooses leaves and lays the nodes out. [`build`] puts it together.
 
 mod binned;
+mod boxes;
+mod build;
+mod costs;
+mod draft;
+mod lbvh;
+mod median;
+mod morton;
+mod ploc;
+mod preset;
+mod reinsertion;
+mod sbvh;
+mod slice;
+mod sweep;
 mod topdown;
 mod tree;
-
-pub use binned::Binned;
-pub use tree::Bvh;
 
 use std::sync::Arc;
 
@@ -16,9 +28,20 @@ use super::params::{C_ISECT, C_TRAV, Kind, Param, ParamValues};
 use super::{Accel, BuildCx, BuildError};
 use crate::geometry::tri::TriTest;
 use crate::scene::Geometry;
+use tree::Bvh;
+
+/// The name it is registered by.
+const ID: &str = "bvh";
 
 /// What can be set.
 pub const PARAMS: &[Param] = &[
+    Param {
+        id: "builder",
+        label: "Builder",
+        help: "How the tree is made: auto picks by the number of triangles and says what it took.",
+        unit: "",
+        kind: Kind::Choice { options: preset::OPTIONS },
+    },
     Param {
         id: "bins",
         label: "Bins",
@@ -43,6 +66,48 @@ pub const PARAMS: &[Param] = &[
     C_TRAV,
     C_ISECT,
     Param {
+        id: "alpha",
+        label: "Overlap for splits",
+        help: "Builder sbvh: triangles are cut where the children overlap by more than this share of the root's area.",
+        unit: "",
+        kind: Kind::Float { min: 0.0, max: 1.0, default: 1e-5 },
+    },
+    Param {
+        id: "duplication",
+        label: "Duplication",
+        help: "Builder sbvh: the most references that cutting may add, per triangle.",
+        unit: "",
+        kind: Kind::Float { min: 0.0, max: 8.0, default: 0.5 },
+    },
+    Param {
+        id: "radius",
+        label: "Search radius",
+        help: "Builder ploc: how far along the Morton curve a cluster looks for its nearest neighbour.",
+        unit: "clusters",
+        kind: Kind::Int { min: 1, max: 128, default: 14 },
+    },
+    Param {
+        id: "reinsertion",
+        label: "Reinsertion",
+        help: "Whether nodes are moved to where they cost less once the tree is built.",
+        unit: "",
+        kind: Kind::Choice { options: &["off", "on"] },
+    },
+    Param {
+        id: "reinsertion_gain",
+        label: "Least gain",
+        help: "Reinsertion ends with a round that lowers the sum of areas by less than this share.",
+        unit: "",
+        kind: Kind::Float { min: 0.0, max: 1.0, default: 0.005 },
+    },
+    Param {
+        id: "reinsertion_secs",
+        label: "Time limit",
+        help: "Reinsertion begins no round after so many seconds; 0 for no limit, which makes the tree independent of the machine.",
+        unit: "s",
+        kind: Kind::Float { min: 0.0, max: 3600.0, default: 0.0 },
+    },
+    Param {
         id: "order",
         label: "Order",
         help: "Which child is visited first: the nearer one, or always the left one, to see what the order is worth.",
@@ -58,11 +123,9 @@ pub const PARAMS: &[Param] = &[
     },
 ];
 
-/// Builds with binned SAH and puts the traversal together that the parameters ask for.
+/// Builds and puts the traversal together that the parameters ask for.
 pub fn build<T: TriTest>(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Box<dyn Accel>, BuildError> {
-    let binned = Binned { bins: p.int("bins"), c_trav: p.float("c_trav"), c_isect: p.float("c_isect") };
-    let limits = topdown::Limits { max_leaf: p.int("max_leaf"), max_depth: p.int("max_depth") };
-    let built = topdown::build(geometry, &binned, limits, cx)?;
+    let built = build::build(geometry, p, cx)?;
     Ok(match (p.choice("order"), p.choice("early_out")) {
         ("fixed", "off") => Box::new(Bvh::<T, false, false>::new(built)),
         ("fixed", _) => Box::new(Bvh::<T, false, true>::new(built)),

@@ -50,14 +50,33 @@ impl Node {
         if self.count == 0 { Some(self.first) } else { None }
     }
 
-    /// The same inner node with its children moved by `by`.
-    pub const fn moved(&self, by: u32) -> Self {
-        let first = if self.count == 0 { self.first + by } else { self.first };
+    /// Triangles of a leaf; 0 for an inner node.
+    pub const fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// A leaf's triangles in the list; none for an inner node.
+    #[inline(always)]
+    pub const fn range(&self) -> std::ops::Range<usize> {
+        let first = self.first as usize;
+        if self.count == 0 { 0..0 } else { first..first + self.count as usize }
+    }
+
+    /// The same node in longer lists: an inner node's children moved by `by`, a leaf's triangles by
+    /// `from`.
+    pub const fn moved(&self, by: u32, from: u32) -> Self {
+        let first = if self.count == 0 { self.first + by } else { self.first + from };
         Self { first, ..*self }
     }
 
+    /// The same node with other bounds.
+    pub const fn bounded(&self, b: &Aabb) -> Self {
+        Self { min: b.min, max: b.max, ..*self }
+    }
+
+    /// Its box.
     #[inline(always)]
-    fn bounds(&self) -> Aabb {
+    pub const fn bounds(&self) -> Aabb {
         Aabb { min: self.min, max: self.max }
     }
 }
@@ -80,6 +99,10 @@ pub struct Built {
     pub nodes: Vec<Node>,
     /// In the order of the leaves.
     pub packed: Vec<Packed>,
+    /// Whether leaves hold parts of triangles, which may then be in several.
+    pub splits: bool,
+    /// What the builder decided by itself, in words for the user.
+    pub remarks: Vec<String>,
     /// The memory of both.
     pub _charge: Charge,
 }
@@ -192,14 +215,16 @@ impl<T: TriTest, const ORDERED: bool, const EARLY_OUT: bool> Cells for Bvh<T, OR
 
     fn prims(&self, cell: &Cell, each: &mut dyn FnMut(PrimRef)) {
         if let Some(node) = self.built.nodes.get(cell.id.node as usize) {
-            let first = node.first as usize;
-            let range = if node.count == 0 { 0..0 } else { first..first + node.count as usize };
-            self.built.packed[range].iter().for_each(|tri| each(tri.prim));
+            self.built.packed[node.range()].iter().for_each(|tri| each(tri.prim));
         }
     }
 
     fn layout(&self) -> Layout {
-        Layout::Hierarchy
+        if self.built.splits { Layout::SplitHierarchy } else { Layout::Hierarchy }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.built.remarks.clone()
     }
 
     fn memory(&self) -> Vec<MemoryPart> {

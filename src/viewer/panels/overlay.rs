@@ -23,8 +23,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
                 .on_hover_text("Cells without triangles: a ray steps through them all the same.");
             ui.label(format!("{x} × {y} × {z} cells")).on_hover_text("Cells along x, y and z. A grid has no depth.");
         }
-        Layout::Hierarchy | Layout::Partition => {
-            let boxes = if layout == Layout::Hierarchy { "Node boxes" } else { "Cells" };
+        Layout::Hierarchy | Layout::SplitHierarchy | Layout::Partition => {
+            let boxes = if layout == Layout::Partition { "Cells" } else { "Node boxes" };
             ui.checkbox(&mut s.boxes, boxes).on_hover_text("The box of each node at the chosen depth.");
             ui.checkbox(&mut s.leaves_only, "Leaves only").on_hover_text("The boxes that hold triangles, at any depth.");
             if layout == Layout::Partition {

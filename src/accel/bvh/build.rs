@@ -1,0 +1,165 @@
+//! From parameters to a tree: the builder, then the passes over what it made.
+
+use std::sync::Arc;
+
+use super::ID;
+use super::binned::Binned;
+use super::boxes::{Bounds, PrimBox, prim_boxes};
+use super::costs::Costs;
+use super::draft::Draft;
+use super::lbvh::Curve;
+use super::median::{ObjectMedian, SpatialMiddle};
+use super::preset::Builder;
+use super::reinsertion::{self, Patience};
+use super::sbvh::{self, Sbvh, Work};
+use super::slice::{Heuristic, InPlace, Slice};
+use super::sweep::Sweep;
+use super::topdown::{self, Limits};
+use super::tree::{Built, MAX_DEPTH, Node, Packed};
+use super::{morton, ploc};
+use crate::accel::params::ParamValues;
+use crate::accel::{BuildCx, BuildError};
+use crate::geometry::num;
+use crate::scene::Geometry;
+use crate::task::OverBudget;
+
+/// What the parameters ask for.
+struct Plan {
+    builder: Builder,
+    costs: Costs,
+    bins: u32,
+    limits: Limits,
+    radius: usize,
+    alpha: f64,
+    /// References that spatial splits may add.
+    allowance: usize,
+    reinsertion: Option<Patience>,
+    remarks: Vec<String>,
+}
+
+impl Plan {
+    fn of(p: &ParamValues, triangles: usize) -> Self {
+        let (builder, remark) = Builder::of(p, triangles);
+        let patience = Patience { gain: p.float("reinsertion_gain"), secs: p.float("reinsertion_secs") };
+        let splits = builder == Builder::Sbvh;
+        Self {
+            builder,
+            costs: Costs { c_trav: p.float("c_trav"), c_isect: p.float("c_isect") },
+            bins: p.int("bins"),
+            limits: Limits { max_leaf: p.int("max_leaf"), max_depth: p.int("max_depth") },
+            radius: p.int("radius") as usize,
+            alpha: p.float("alpha"),
+            allowance: if splits { sbvh::allowance(triangles, p.float("duplication")) } else { 0 },
+            reinsertion: (p.choice("reinsertion") == "on").then_some(patience),
+            remarks: remark.into_iter().collect(),
+        }
+    }
+
+    /// Whether the builder leaves it to a pass to choose the leaves.
+    const fn needs_leaves(&self) -> bool {
+        matches!(self.builder, Builder::Lbvh | Builder::Ploc) || self.reinsertion.is_some()
+    }
+
+    /// While leaves are still to be chosen there is one for each triangle, as deep as it takes.
+    fn build_limits(&self) -> Limits {
+        if self.needs_leaves() { Limits { max_leaf: 1, max_depth: MAX_DEPTH } } else { self.limits }
+    }
+
+    fn peak_bytes(&self, triangles: usize) -> u64 {
+        let refs = triangles + self.allowance;
+        let order = match self.builder {
+            Builder::Sweep => 3 * size_of::<(u32, u32)>() + 3 * size_of::<u32>() + size_of::<f64>(),
+            Builder::Lbvh | Builder::Ploc => 2 * size_of::<morton::Coded>() + 2 * size_of::<Node>(),
+            Builder::Sbvh => 2 * size_of::<PrimBox>(),
+            Builder::Median | Builder::Midpoint | Builder::Binned => 0,
+        };
+        // Nodes exist twice while subtrees are joined or arranged.
+        let each = size_of::<PrimBox>() + order + size_of::<Packed>();
+        (refs * each + 2 * Draft::bytes(refs)) as u64
+    }
+}
+
+/// Builds a BVH over all live triangles.
+///
+/// # Errors
+/// Cancelled, or over the memory budget.
+pub fn build(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Built, BuildError> {
+    let n = geometry.live_count();
+    let mut plan = Plan::of(p, n);
+    if n + plan.allowance > num::MAX_INDEX / 2 {
+        let limit = num::MAX_INDEX as u64;
+        return Err(BuildError::TooMany { structure: ID, what: "nodes", limit, remedy: "Use a smaller model." });
+    }
+    let peak = cx.budget.charge(plan.peak_bytes(n)).map_err(too_large)?;
+    cx.progress.start("bound", n as u64);
+    let prims = prim_boxes(geometry, cx)?;
+    let draft = if n == 0 { Draft { nodes: Vec::new(), refs: Vec::new() } } else { plan.draft(geometry, prims, cx)? };
+    cx.progress.start("pack", draft.refs.len() as u64);
+    let packed = draft.pack(geometry, cx)?;
+    drop(peak);
+    let bytes = draft.nodes.capacity() * size_of::<Node>() + size_of_val(&packed[..]);
+    let charge = cx.budget.charge(bytes as u64).map_err(too_large)?;
+    let splits = plan.builder == Builder::Sbvh;
+    Ok(Built { geometry: Arc::clone(geometry), nodes: draft.nodes, packed, splits, remarks: plan.remarks, _charge: charge })
+}
+
+fn too_large(over: OverBudget) -> BuildError {
+    BuildError::Memory {
+        structure: ID,
+        over,
+        remedy: "Raise the memory budget, or use a structure that packs nothing, such as bound.",
+    }
+}
+
+impl Plan {
+    fn draft(&mut self, geometry: &Geometry, mut prims: Vec<PrimBox>, cx: &BuildCx) -> Result<Draft, BuildError> {
+        cx.progress.start("split", prims.len() as u64);
+        let limits = self.build_limits();
+        let binned = Binned { bins: self.bins, costs: self.costs };
+        let draft = match self.builder {
+            Builder::Median => in_place(ObjectMedian, &mut prims, limits, cx),
+            Builder::Midpoint => in_place(SpatialMiddle, &mut prims, limits, cx),
+            Builder::Binned => in_place(binned, &mut prims, limits, cx),
+            Builder::Sweep => {
+                let mut lists = cx.pool.run(|| Sweep::sorted(&prims, cx))?;
+                let sweep = Sweep::new(&prims, self.costs);
+                cx.pool.run(|| topdown::build(&sweep, Sweep::work(&mut lists), limits, cx))
+            }
+            Builder::Sbvh => {
+                let root_area = prims.iter().fold(Bounds::EMPTY, |b, p| b.union(p.bounds())).half_area();
+                let sbvh = Sbvh { geometry, binned, costs: self.costs, alpha: self.alpha, root_area };
+                cx.pool.run(|| topdown::build(&sbvh, Work::new(prims, self.allowance), limits, cx))
+            }
+            Builder::Lbvh => {
+                let codes = morton::sorted(&prims, cx)?;
+                cx.pool.run(|| topdown::build(&Curve { boxes: &prims }, &codes[..], limits, cx))
+            }
+            Builder::Ploc => cx.pool.run(|| ploc::build(&prims, self.radius, cx)),
+        }?;
+        if !self.needs_leaves() {
+            return Ok(draft);
+        }
+        let draft = self.reinserted(draft, cx)?;
+        draft.arranged(geometry, &self.costs, self.limits, cx)
+    }
+
+    /// The optimised tree, unless its SAH cost is higher once leaves are chosen: the pass looks at
+    /// areas only.
+    fn reinserted(&mut self, draft: Draft, cx: &BuildCx) -> Result<Draft, BuildError> {
+        let Some(patience) = self.reinsertion else { return Ok(draft) };
+        let mut better = Draft { nodes: draft.nodes.clone(), refs: draft.refs.clone() };
+        reinsertion::optimise(&mut better, patience, cx)?;
+        let cost = |draft: &Draft| draft.cost(&self.costs, self.limits.max_leaf, cx);
+        let (before, after) = (cost(&draft)?, cost(&better)?);
+        let kept = after <= before;
+        let share = if before > 0.0 { 100.0 * (1.0 - after / before) } else { 0.0 };
+        let text =
+            if kept { format!("it lowered the SAH cost by {share:.1} %") } else { "undone, since it gained nothing".to_owned() };
+        self.remarks.push(format!("Reinsertion: {text}."));
+        Ok(if kept { better } else { draft })
+    }
+}
+
+fn in_place(heuristic: impl Heuristic + Send, prims: &mut [PrimBox], limits: Limits, cx: &BuildCx) -> Result<Draft, BuildError> {
+    cx.pool.run(|| topdown::build(&InPlace::new(heuristic), Slice::new(prims), limits, cx))
+}

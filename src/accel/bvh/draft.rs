@@ -1,0 +1,189 @@
+//! A tree as builders make it, and how it becomes the tree that rays walk: leaves are collapsed where
+//! the surface area heuristic says so, what is too deep is built anew, and nodes and triangles are
+//! laid out in the order of a walk.
+
+use super::boxes::{Bounds, PrimBox, in_chunks};
+use super::costs::Costs;
+use super::median::ObjectMedian;
+use super::slice::{InPlace, Slice};
+use super::topdown::{self, Limits};
+use super::tree::{Node, Packed};
+use crate::accel::{BuildCx, BuildError};
+use crate::geometry::{Aabb, num};
+use crate::scene::{Geometry, PrimRef};
+
+/// Nodes, the root first and siblings side by side, and the triangles of the leaves. Children come
+/// after their parent.
+#[derive(Debug)]
+pub struct Draft {
+    pub nodes: Vec<Node>,
+    pub refs: Vec<PrimRef>,
+}
+
+impl Draft {
+    /// One leaf for each triangle would come to so many bytes.
+    pub const fn bytes(triangles: usize) -> usize {
+        2 * triangles * size_of::<Node>() + triangles * size_of::<PrimRef>()
+    }
+
+    /// The packed triangles in the order of the leaves.
+    pub fn pack(&self, geometry: &Geometry, cx: &BuildCx) -> Result<Vec<Packed>, BuildError> {
+        in_chunks(self.refs.len(), cx, |i| Packed { corners: geometry.corners(self.refs[i]), prim: self.refs[i] })
+    }
+
+    /// The SAH cost once leaves are collapsed, times the root's area.
+    pub fn cost(&self, costs: &Costs, max_leaf: u32, cx: &BuildCx) -> Result<f64, BuildError> {
+        Ok(summaries(self, costs, max_leaf, cx)?.1)
+    }
+
+    /// Brings a tree of any builder into the order of a walk, within the limits. Nodes become leaves
+    /// where that is cheaper: decided from the leaves up, so no other choice of leaves costs less.
+    pub fn arranged(self, geometry: &Geometry, costs: &Costs, limits: Limits, cx: &BuildCx) -> Result<Self, BuildError> {
+        cx.progress.start("arrange", self.refs.len() as u64);
+        let (summaries, _) = summaries(&self, costs, limits.max_leaf, cx)?;
+        let count = self.refs.len();
+        let draft = Self { nodes: Vec::with_capacity(self.nodes.len()), refs: Vec::with_capacity(count) };
+        let mut arranger = Arranger { from: &self, summaries: &summaries, geometry, limits, cx, draft };
+        arranger.run()?;
+        arranger.draft.nodes.shrink_to_fit();
+        Ok(arranger.draft)
+    }
+}
+
+/// What is below a node, once leaves are collapsed.
+#[derive(Clone, Copy, Default)]
+struct Summary {
+    triangles: u32,
+    /// Steps to the deepest leaf, saturating.
+    height: u8,
+    is_leaf: bool,
+}
+
+/// From the last node to the first, so that children come before their parent; and the cost of the
+/// whole tree.
+fn summaries(draft: &Draft, costs: &Costs, max_leaf: u32, cx: &BuildCx) -> Result<(Vec<Summary>, f64), BuildError> {
+    let mut summaries = vec![Summary::default(); draft.nodes.len()];
+    let mut below = vec![0f64; draft.nodes.len()];
+    for at in (0..draft.nodes.len()).rev() {
+        if at.is_multiple_of(1 << 14) {
+            cx.cancel.check()?;
+        }
+        let node = &draft.nodes[at];
+        let area = node.bounds().area();
+        (summaries[at], below[at]) = match node.left() {
+            None => {
+                let count = node.count();
+                (Summary { triangles: count, height: 0, is_leaf: true }, costs.triangles(area, count as usize))
+            }
+            Some(left) => {
+                let (l, r) = (left as usize, left as usize + 1);
+                let (a, b) = (summaries[l], summaries[r]);
+                let triangles = a.triangles + b.triangles;
+                let (inner, leaf) = (costs.c_trav * area + below[l] + below[r], costs.triangles(area, triangles as usize));
+                let is_leaf = triangles <= max_leaf && leaf <= inner;
+                let height = if is_leaf { 0 } else { a.height.max(b.height).saturating_add(1) };
+                (Summary { triangles, height, is_leaf }, if is_leaf { leaf } else { inner })
+            }
+        };
+    }
+    Ok((summaries, below.first().copied().unwrap_or(0.0)))
+}
+
+struct Arranger<'a> {
+    from: &'a Draft,
+    summaries: &'a [Summary],
+    geometry: &'a Geometry,
+    limits: Limits,
+    cx: &'a BuildCx,
+    draft: Draft,
+}
+
+/// What is written where, and how deep that is.
+struct Open {
+    from: u32,
+    to: usize,
+    depth: u32,
+}
+
+impl Arranger<'_> {
+    fn run(&mut self) -> Result<(), BuildError> {
+        self.draft.nodes.push(self.from.nodes[0]);
+        let mut open = vec![Open { from: 0, to: 0, depth: 0 }];
+        let mut steps = 0usize;
+        while let Some(Open { from, to, depth }) = open.pop() {
+            steps += 1;
+            if steps.is_multiple_of(1 << 14) {
+                self.cx.cancel.check()?;
+                self.cx.progress.advance(1 << 14);
+            }
+            let node = self.from.nodes[from as usize];
+            match node.left() {
+                Some(left) if !self.summaries[from as usize].is_leaf => {
+                    if !self.fits(left, depth) {
+                        self.rebuild(from, to, depth)?;
+                        continue;
+                    }
+                    let pair = self.draft.nodes.len();
+                    self.draft.nodes[to] = Node::inner(&node.bounds(), num::index(pair));
+                    self.draft.nodes.extend([node; 2]);
+                    open.push(Open { from: left + 1, to: pair + 1, depth: depth + 1 });
+                    open.push(Open { from: left, to: pair, depth: depth + 1 });
+                }
+                _ => self.leaf(from, to),
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether both children at `left` either end in time or can still be halved down to size.
+    fn fits(&self, left: u32, depth: u32) -> bool {
+        [left, left + 1].into_iter().all(|child| {
+            let s = &self.summaries[child as usize];
+            let below = self.limits.max_depth.saturating_sub(depth + 1);
+            depth < self.limits.max_depth
+                && (u32::from(s.height) <= below || (below > 0 && self.limits.leave_room(s.triangles as usize, below)))
+        })
+    }
+
+    fn leaf(&mut self, from: u32, to: usize) {
+        let first = self.draft.refs.len();
+        self.gather(from);
+        if self.from.nodes[from as usize].left().is_some() {
+            // Two leaves that become one may hold parts of the same triangle.
+            let mut all = self.draft.refs.split_off(first);
+            all.sort_unstable();
+            all.dedup();
+            self.draft.refs.append(&mut all);
+        }
+        let count = self.draft.refs.len() - first;
+        let bounds = self.from.nodes[from as usize].bounds();
+        self.draft.nodes[to] = Node::leaf(&bounds, num::index(first), num::index(count));
+    }
+
+    /// Appends all triangles below a node.
+    fn gather(&mut self, from: u32) {
+        let mut open = vec![from];
+        while let Some(at) = open.pop() {
+            let node = &self.from.nodes[at as usize];
+            match node.left() {
+                Some(left) => open.extend([left + 1, left]),
+                None => self.draft.refs.extend_from_slice(&self.from.refs[node.range()]),
+            }
+        }
+    }
+
+    /// Builds what would be too deep anew, halving: as shallow as can be.
+    fn rebuild(&mut self, from: u32, to: usize, depth: u32) -> Result<(), BuildError> {
+        let first = self.draft.refs.len();
+        self.gather(from);
+        let boxed = |prim: PrimRef| PrimBox::new(&Bounds::from(&Aabb::of_triangle(&self.geometry.corners(prim))), prim);
+        let mut prims: Vec<PrimBox> = self.draft.refs.drain(first..).map(boxed).collect();
+        let limits = Limits { max_depth: self.limits.max_depth - depth, ..self.limits };
+        let built = topdown::build(&InPlace::new(ObjectMedian), Slice::new(&mut prims), limits, self.cx)?;
+        let by = num::index(self.draft.nodes.len() - 1);
+        self.draft.nodes[to] = built.nodes[0].moved(by, num::index(first));
+        self.draft.nodes.extend(built.nodes[1..].iter().map(|node| node.moved(by, num::index(first))));
+        self.draft.refs.extend_from_slice(&built.refs);
+        Ok(())
+    }
+}
