@@ -52,7 +52,9 @@ impl Best {
         probe: &mut P,
     ) -> bool {
         probe.prim();
-        let Some(hit) = ray.hit(tri, self.tmin, self.hit.t) else { return false };
+        let hit = ray.hit(tri, self.tmin, self.hit.t);
+        probe.tested(prim, hit.map(|hit| hit.t));
+        let Some(hit) = hit else { return false };
         let hit = PrimHit { t: hit.t, u: hit.u, v: hit.v, prim };
         let closer = hit.t < self.hit.t || prim < self.hit.prim;
         if closer && query.accept(&hit) {

@@ -162,7 +162,12 @@ pub trait Cells: Send + Sync {
 /// Walks all cells below and including the root, parents first, until `visit` breaks or says not to
 /// go deeper.
 pub fn walk(cells: &dyn Cells, visit: &mut dyn FnMut(&Cell) -> ControlFlow<(), Descend>) {
-    let mut stack = vec![cells.root()];
+    walk_below(cells, cells.root(), visit);
+}
+
+/// The same below and including one cell.
+pub fn walk_below(cells: &dyn Cells, top: Cell, visit: &mut dyn FnMut(&Cell) -> ControlFlow<(), Descend>) {
+    let mut stack = vec![top];
     let mut children = Vec::new();
     while let Some(cell) = stack.pop() {
         match visit(&cell) {

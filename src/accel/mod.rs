@@ -22,13 +22,14 @@ pub mod validate;
 pub use build::{BuildCx, BuildError};
 pub use cell::{Cell, CellId, CellKind, Cells, MemoryPart, Shape, Split};
 pub use hit::{AnyHit, Closest, Hit, Mode, PrimHit, Query};
+pub use probe::{Prune, Step};
 
 use std::sync::Arc;
 
 use crate::geometry::Ray;
 use crate::scene::Geometry;
 use crate::task::{Cancel, Cancelled};
-use probe::{Counts, Off, Probe};
+use probe::{Counts, Off, Probe, Watched};
 
 /// How a ray is traced. Rays are in the scaled space of [`Geometry::space`] and valid.
 pub trait Structure: Cells + Sized + 'static {
@@ -82,8 +83,14 @@ pub trait Accel: Cells {
     /// [`Cancelled`], within 100 ms of the request; some hits are then not written.
     fn trace(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<Traced, Cancelled>;
 
-    /// Traces one world ray and counts what the traversal does. The hit is the same.
-    fn trace_watched(&self, ray: &Ray, mode: Mode, counts: &mut Counts) -> Option<Hit>;
+    /// Traces one world ray and counts what the traversal does; a listener hears every step. The
+    /// hit is the same.
+    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>) -> Option<Hit>;
+
+    /// The same with nobody who listens.
+    fn trace_watched(&self, ray: &Ray, mode: Mode, counts: &mut Counts) -> Option<Hit> {
+        self.trace_heard(ray, mode, &mut Watched { counts, listener: None })
+    }
 }
 
 impl<S: Structure> Accel for S {
@@ -99,11 +106,11 @@ impl<S: Structure> Accel for S {
         }
     }
 
-    fn trace_watched(&self, ray: &Ray, mode: Mode, counts: &mut Counts) -> Option<Hit> {
+    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>) -> Option<Hit> {
         let local = |ray: &Ray| {
             Ok(match mode {
-                Mode::Closest => self.trace_one(ray, &Closest, counts),
-                Mode::Any => self.trace_one(ray, &AnyHit, counts),
+                Mode::Closest => self.trace_one(ray, &Closest, watched),
+                Mode::Any => self.trace_one(ray, &AnyHit, watched),
             })
         };
         in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local).unwrap_or(None)

@@ -1,8 +1,31 @@
 //! What a traversal can be watched with. The probe is a type parameter: rays that are timed are
 //! compiled with [`Off`], which leaves nothing behind.
 
+use crate::scene::PrimRef;
+
 /// Hears what a traversal does.
 pub trait Probe {
+    /// Whether steps are heard: finding out why a node is left out costs something.
+    const LISTENS: bool = false;
+
+    /// The node or cell entered next, by its number in [`super::CellId`].
+    #[inline(always)]
+    fn at(&mut self, node: u32) {
+        let _ = node;
+    }
+
+    /// A node or cell is left out.
+    #[inline(always)]
+    fn pruned(&mut self, node: u32, why: Prune) {
+        let _ = (node, why);
+    }
+
+    /// A primitive was tested and met at some t, or not met in the interval that is left.
+    #[inline(always)]
+    fn tested(&mut self, prim: PrimRef, t: Option<f32>) {
+        let _ = (prim, t);
+    }
+
     /// A node or cell was entered: its bounds are met and not behind the best hit.
     #[inline(always)]
     fn node(&mut self) {}
@@ -14,6 +37,78 @@ pub trait Probe {
     /// A primitive was tested.
     #[inline(always)]
     fn prim(&mut self) {}
+}
+
+/// Why a node or cell is left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prune {
+    /// The ray misses its bounds.
+    Missed,
+    /// It lies before the ray's start, or beyond its end.
+    Outside,
+    /// It begins behind the best hit so far.
+    BehindHit,
+}
+
+/// One step of a traversal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// A node or cell was entered.
+    Entered(u32),
+    /// A node or cell was left out.
+    Pruned(u32, Prune),
+    /// A primitive was tested: where it is met, if it is in the interval that was left.
+    Tested(PrimRef, Option<f32>),
+}
+
+/// Counts, and tells each step to a listener if there is one.
+pub struct Watched<'a> {
+    /// What is counted.
+    pub counts: &'a mut Counts,
+    /// Who hears the steps.
+    pub listener: Option<&'a mut dyn FnMut(Step)>,
+}
+
+impl std::fmt::Debug for Watched<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Watched").field("counts", &self.counts).finish_non_exhaustive()
+    }
+}
+
+impl Watched<'_> {
+    fn tell(&mut self, step: Step) {
+        if let Some(listener) = &mut self.listener {
+            listener(step);
+        }
+    }
+}
+
+impl Probe for Watched<'_> {
+    const LISTENS: bool = true;
+
+    fn at(&mut self, node: u32) {
+        self.tell(Step::Entered(node));
+    }
+
+    fn pruned(&mut self, node: u32, why: Prune) {
+        self.tell(Step::Pruned(node, why));
+    }
+
+    fn tested(&mut self, prim: PrimRef, t: Option<f32>) {
+        self.tell(Step::Tested(prim, t));
+    }
+
+    fn node(&mut self) {
+        self.counts.node();
+    }
+
+    fn leaf(&mut self) {
+        self.counts.leaf();
+    }
+
+    fn prim(&mut self) {
+        self.counts.prim();
+    }
 }
 
 /// Nobody watches.

@@ -132,13 +132,17 @@ impl App {
         });
         if !narrow {
             Panel::right(id("right")).default_size(theme::RIGHT_PANEL).resizable(true).show(ui, |ui| {
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| panels::statistics::show(ui, state, commands));
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    panels::statistics::show(ui, state, commands);
+                    panels::selection::show(ui, state, commands);
+                });
             });
         } else {
             Panel::right(id("strip")).exact_size(theme::STRIP).resizable(false).show(ui, |ui| {
                 ui.menu_button("Σ", |ui| {
                     ui.set_width(theme::RIGHT_PANEL);
                     panels::statistics::show(ui, state, commands);
+                    panels::selection::show(ui, state, commands);
                 })
                 .response
                 .accessible_name("Statistics")

@@ -45,6 +45,8 @@ pub enum Command {
     Redo,
     /// Say what is there: (-1, -1) is the lower left corner of the view, (1, 1) the upper right.
     Pick(Vec2),
+    /// Select another of the cells that hold what was clicked, by depth.
+    SelectLevel(usize),
     /// Frame the whole model.
     FrameAll,
     /// Between perspective and orthographic.

@@ -15,7 +15,7 @@ mod options;
 mod overlay;
 mod pace;
 pub mod panels;
-mod pick;
+pub mod pick;
 mod rehearsal;
 mod screenshot;
 pub mod settings;

@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use super::format;
 use super::gpu::BoxInstance;
-use crate::accel::cell::{Descend, walk};
-use crate::accel::probe::Counts;
+use crate::accel::cell::{Cell, Descend, walk};
+use crate::accel::probe::{Counts, Step, Watched};
 use crate::accel::{Accel, Hit, Mode};
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Scene;
@@ -16,45 +16,67 @@ use glam::Vec3;
 pub struct Picked {
     /// What it is, in a line.
     pub text: String,
-    /// The box of its leaf, in the scaled space.
-    pub leaf: Option<BoxInstance>,
+    /// The cells that hold the point, from the root to the leaf.
+    pub path: Vec<Cell>,
+    /// Which of them is selected.
+    pub level: usize,
+    /// What the ray of the click did, step by step.
+    pub steps: Vec<Step>,
+    /// It did more than is listed.
+    pub more_steps: bool,
 }
+
+impl Picked {
+    /// The selected cell.
+    pub fn selected(&self) -> Option<&Cell> {
+        self.path.get(self.level)
+    }
+
+    /// Its box, in the scaled space.
+    pub fn selected_box(&self) -> Option<BoxInstance> {
+        self.selected().map(|cell| BoxInstance::new(cell.shape.bounds(), [u8::MAX; 4]))
+    }
+}
+
+/// Steps that are listed of one ray.
+const MOST_STEPS: usize = 20_000;
 
 /// Traces the ray of the click; `None` if it meets nothing.
 pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray) -> Option<Picked> {
     let mut counts = Counts::default();
-    let hit = accel.trace_watched(ray, Mode::Closest, &mut counts)?;
-    let leaf = leaf_of(accel, ray, &hit);
+    let (mut steps, mut more_steps) = (Vec::new(), false);
+    let mut listener = |step| if steps.len() < MOST_STEPS { steps.push(step) } else { more_steps = true };
+    let hit = accel.trace_heard(ray, Mode::Closest, &mut Watched { counts: &mut counts, listener: Some(&mut listener) })?;
+    let path = path_to(accel, ray, &hit);
     let mesh = &scene.meshes[scene.instances[hit.instance as usize].mesh];
     let name = if mesh.name.is_empty() { String::new() } else { format!(" of {}", mesh.name) };
-    let depth = leaf.map(|(depth, _)| format!(", leaf at depth {depth}")).unwrap_or_default();
+    let depth = path.last().map(|leaf| format!(", leaf at depth {}", leaf.depth)).unwrap_or_default();
     let work = format!("{} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
     let text = format!("Triangle {}{name}{depth}: this ray took {work}", format::count(u64::from(hit.primitive)));
-    Some(Picked { text, leaf: leaf.map(|(_, bounds)| BoxInstance::new(&bounds, [u8::MAX; 4])) })
+    Some(Picked { text, level: path.len().saturating_sub(1), path, steps, more_steps })
 }
 
-/// The leaf that holds the triangle and the point, and its depth.
-fn leaf_of(accel: &dyn Accel, ray: &Ray, hit: &Hit) -> Option<(u32, Aabb)> {
+/// The cells from the root to the leaf that holds the triangle and the point; empty if none does.
+fn path_to(accel: &dyn Accel, ray: &Ray, hit: &Hit) -> Vec<Cell> {
     let geometry = accel.geometry();
     let prim = geometry.flat(hit.instance, hit.primitive);
     let point = geometry.space().point(ray.at(hit.t));
     let slack = Vec3::splat(1e-4 * geometry.bounds().size().max_element());
     let near = Aabb { min: point - slack, max: point + slack };
-    let mut found = None;
+    let (mut path, mut found) = (Vec::new(), false);
     walk(accel, &mut |cell| {
+        path.truncate(cell.depth as usize);
         let bounds = *cell.shape.bounds();
         if bounds.intersection(near).is_empty() {
             return ControlFlow::Continue(Descend::No);
         }
+        path.push(*cell);
         let mut holds = false;
         if cell.is_leaf() {
             accel.prims(cell, &mut |p| holds |= p == prim);
         }
-        if holds {
-            found = Some((cell.depth, bounds));
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(Descend::Yes)
+        found = holds;
+        if holds { ControlFlow::Break(()) } else { ControlFlow::Continue(Descend::Yes) }
     });
-    found
+    if found { path } else { Vec::new() }
 }

@@ -15,6 +15,8 @@ use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, Style, Tex
 
 use eframe::egui;
 
+/// The width of a curve in a plot.
+pub const CURVE: f32 = 1.5;
 /// The step that every gap is a multiple of, in points.
 pub const GRID: f32 = 4.0;
 /// The gap between things that belong to different groups, and around a panel's content.

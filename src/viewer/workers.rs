@@ -8,10 +8,10 @@ use super::model::{self, Model};
 use super::overlay::{self, Collected, Wanted};
 use super::pick::{self, Picked};
 use crate::accel::stats::{SahWeights, Stats};
-use crate::accel::{Accel, BuildCx, BuildError};
+use crate::accel::{Accel, BuildCx, BuildError, Cell};
 use crate::geometry::Ray;
 use crate::job::Job;
-use crate::lab::{Contestant, MeasureOptions, RayKind, RaySet, Timing, measure};
+use crate::lab::{Contestant, MeasureOptions, RayKind, RaySet, SahCurves, Timing, measure, sah_curves};
 use crate::render;
 use crate::scene::{Camera, Geometry, LoadError, Scene};
 use crate::task::{Budget, Cancelled, Pool};
@@ -94,6 +94,14 @@ pub type Picking = Job<Option<Picked>>;
 /// Starts looking what is under a click: a ray through a structure that is none can take long.
 pub fn pick(shared: &Shared, scene: Arc<Scene>, accel: Arc<dyn Accel>, ray: Ray) -> std::io::Result<Picking> {
     Job::spawn("pick", shared.waker(), move |_, _| pick::pick(&scene, accel.as_ref(), &ray))
+}
+
+/// The SAH curves of a cell, on their way.
+pub type Curving = Job<Result<Option<SahCurves>, Cancelled>>;
+
+/// Starts working out what dividing a cell would have cost.
+pub fn curves(shared: &Shared, accel: Arc<dyn Accel>, cell: Cell, weights: SahWeights) -> std::io::Result<Curving> {
+    Job::spawn("curves", shared.waker(), move |cancel, _| sah_curves(accel.as_ref(), &cell, weights, cancel))
 }
 
 /// What measuring brings: every structure that could be built, its figures, and why others have

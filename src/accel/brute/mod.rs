@@ -11,25 +11,43 @@ use super::probe::{Off, Probe};
 use super::{BuildCx, BuildError, Hit, PrimHit, Query, Structure, Traced, in_scaled_space};
 use crate::geometry::Ray;
 use crate::geometry::num;
-use crate::geometry::tri::TriTest;
+use crate::geometry::tri::{Block, LANES, TriTest};
 use crate::scene::{Geometry, PrimRef};
-use crate::task::{Cancel, Cancelled};
+use crate::task::{Cancel, Cancelled, Charge};
+use rayon::prelude::*;
 
-/// A flat list of triangles, tested with `T`; behind one box if `BOUND`.
+/// A flat list of triangles, tested with `T` eight at a time; behind one box if `BOUND`.
 #[derive(Debug)]
 pub struct Brute<T, const BOUND: bool> {
     geometry: Arc<Geometry>,
+    blocks: Vec<Block>,
+    _charge: Charge,
     test: PhantomData<T>,
 }
 
-/// Triangles tested between two looks at the cancel flag: about a millisecond.
-const TESTS_PER_CHECK: usize = 1 << 16;
+/// Blocks tested between two looks at the cancel flag: well under a millisecond.
+const BLOCKS_PER_CHECK: usize = 1 << 13;
+/// Blocks packed between two.
+const CHUNK: usize = 1 << 11;
 
 impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
-    /// There is nothing to build.
+    /// Packs the triangles side by side; there is nothing else to build.
     pub fn build(geometry: &Arc<Geometry>, cx: &BuildCx) -> Result<Self, BuildError> {
         cx.cancel.check()?;
-        Ok(Self { geometry: Arc::clone(geometry), test: PhantomData })
+        let n = geometry.live_count();
+        let count = n.div_ceil(LANES);
+        let structure = if BOUND { "bound" } else { "brute" };
+        let too_large = |over| BuildError::Memory { structure, over, remedy: "Raise the memory budget, or use grid." };
+        let charge = cx.budget.charge((count * size_of::<Block>()) as u64).map_err(too_large)?;
+        cx.progress.start("pack", n as u64);
+        let corners = |b: usize| (b * LANES..n.min((b + 1) * LANES)).map(|i| geometry.corners(geometry.live(i)));
+        let chunk = |c: usize| {
+            cx.progress.advance((CHUNK * LANES) as u64);
+            let blocks = c * CHUNK..count.min((c + 1) * CHUNK);
+            cx.cancel.check().map(|()| blocks.map(|b| Block::new(corners(b))).collect::<Vec<_>>())
+        };
+        let chunks: Result<Vec<_>, _> = cx.pool.run(|| (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect());
+        Ok(Self { geometry: Arc::clone(geometry), blocks: chunks?.concat(), _charge: charge, test: PhantomData })
     }
 
     #[inline(always)]
@@ -50,17 +68,42 @@ impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
         }
         probe.node();
         probe.leaf();
-        let count = self.geometry.live_count();
-        for start in (0..count).step_by(TESTS_PER_CHECK) {
+        for (c, blocks) in self.blocks.chunks(BLOCKS_PER_CHECK).enumerate() {
             check()?;
-            for i in start..count.min(start + TESTS_PER_CHECK) {
-                let prim = self.geometry.live(i);
-                if best.test(&test, &self.geometry.corners(prim), prim, query, probe) {
+            for (b, block) in blocks.iter().enumerate() {
+                let first = (c * BLOCKS_PER_CHECK + b) * LANES;
+                if self.trace_block(&test, block, first, query, probe, &mut best) {
                     return Ok(best.found());
                 }
             }
         }
         Ok(best.found())
+    }
+
+    /// A first look at all, then the whole test of those that may be met. True if the search is over.
+    #[inline(always)]
+    fn trace_block<Q: Query, P: Probe>(
+        &self,
+        test: &T,
+        block: &Block,
+        first: usize,
+        query: &Q,
+        probe: &mut P,
+        best: &mut Best,
+    ) -> bool {
+        let lanes = LANES.min(self.geometry.live_count() - first);
+        let mut left = test.may_meet(block) & ((1 << lanes) - 1);
+        // The others were tested, too, and missed.
+        (left.count_ones()..num::index(lanes)).for_each(|_| probe.prim());
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let prim = self.geometry.live(first + lane);
+            if best.test(test, &block.triangle(lane), prim, query, probe) {
+                return true;
+            }
+        }
+        false
     }
 }
 
@@ -111,6 +154,6 @@ impl<T: TriTest, const BOUND: bool> Cells for Brute<T, BOUND> {
     }
 
     fn memory(&self) -> Vec<MemoryPart> {
-        Vec::new()
+        vec![MemoryPart { name: "packed triangles", bytes: size_of_val(&self.blocks[..]) as u64 }]
     }
 }

@@ -90,28 +90,29 @@ const fn bucket(x: f32) -> u32 {
     x as u32
 }
 
+/// The buckets of an axis.
 #[derive(Clone, Copy)]
-struct Bin {
-    bounds: Bounds,
-    count: u32,
+struct Bins<const N: usize> {
+    bounds: [Bounds; N],
+    counts: [u32; N],
 }
 
-const EMPTY: Bin = Bin { bounds: Bounds::EMPTY, count: 0 };
+impl<const N: usize> Bins<N> {
+    const EMPTY: Self = Self { bounds: [Bounds::EMPTY; N], counts: [0; N] };
 
-impl Bin {
     #[inline(always)]
-    fn join(self, other: Self) -> Self {
-        Self { bounds: self.bounds.union(other.bounds), count: self.count + other.count }
+    fn add(&mut self, at: usize, bounds: Bounds) {
+        self.bounds[at] = self.bounds[at].union(bounds);
+        self.counts[at] += 1;
     }
 
-    #[inline(always)]
-    fn cost(&self) -> f64 {
-        self.bounds.half_area() * f64::from(self.count)
+    fn join(&mut self, other: &Self) {
+        for i in 0..N {
+            self.bounds[i] = self.bounds[i].union(other.bounds[i]);
+            self.counts[i] += other.counts[i];
+        }
     }
 }
-
-/// The buckets of all three axes.
-type Bins<const N: usize> = [[Bin; N]; 3];
 
 /// Triangles from which on a node is binned in parallel, and in what portions.
 const PARALLEL: usize = 1 << 15;
@@ -122,9 +123,10 @@ impl Binned {
     /// triangles fill few buckets, and clearing all would cost more than filling those.
     pub fn best(&self, prims: &[PrimBox], centres: &Bounds, cx: &BuildCx) -> Result<Option<BinSplit>, BuildError> {
         let bins = (self.bins as usize).min(2 * prims.len()).max(2);
-        match prims.len() {
-            0..=4 => self.among::<8>(bins.min(8), prims, centres, cx),
-            5..=64 => self.among::<16>(bins.min(16), prims, centres, cx),
+        match (prims.len(), bins) {
+            (0..=4, _) => self.among::<8>(bins.min(8), prims, centres, cx),
+            (_, 0..=16) | (5..=64, _) => self.among::<16>(bins.min(16), prims, centres, cx),
+            (_, 0..=32) => self.among::<32>(bins, prims, centres, cx),
             _ => self.among::<{ MAX_BINS as usize }>(bins, prims, centres, cx),
         }
     }
@@ -137,12 +139,20 @@ impl Binned {
         cx: &BuildCx,
     ) -> Result<Option<BinSplit>, BuildError> {
         let scale = Scale::new(centres, bins);
-        let counted = count::<N>(prims, &scale, cx)?;
-        let on_axis = |axis: usize| {
-            let (children, first_right, sides) = cheapest(&counted[axis], bins)?;
-            Some(BinSplit { rule: scale.rule(axis, first_right), children, sides })
-        };
-        Ok((0..3).filter_map(on_axis).min_by(|a, b| a.children.total_cmp(&b.children)))
+        let mut counted = [Bins::<N>::EMPTY; 3];
+        if prims.len() < PARALLEL {
+            count(prims, &scale, &mut counted);
+        } else {
+            counted = count_in_parallel(prims, &scale, cx)?;
+        }
+        let mut best: Option<BinSplit> = None;
+        for (axis, bins_on_axis) in counted.iter().enumerate() {
+            let least = best.map_or(f64::INFINITY, |b| b.children);
+            if let Some((children, first_right, sides)) = cheapest(bins_on_axis, bins, least) {
+                best = Some(BinSplit { rule: scale.rule(axis, first_right), children, sides });
+            }
+        }
+        Ok(best)
     }
 }
 
@@ -159,50 +169,55 @@ impl Heuristic for Binned {
 }
 
 /// Sorts the triangles into the buckets of all axes in one pass.
-fn count<const N: usize>(prims: &[PrimBox], scale: &Scale, cx: &BuildCx) -> Result<Bins<N>, BuildError> {
-    let chunk = |prims: &[PrimBox]| {
-        let mut bins: Bins<N> = [[EMPTY; N]; 3];
-        for prim in prims {
-            let (at, bounds) = (scale.buckets(prim), prim.bounds());
-            for (bins, at) in bins.iter_mut().zip(at) {
-                let bin = &mut bins[at];
-                bin.bounds = bin.bounds.union(bounds);
-                bin.count += 1;
-            }
-        }
-        bins
-    };
-    if prims.len() < PARALLEL {
-        return Ok(chunk(prims));
+fn count<const N: usize>(prims: &[PrimBox], scale: &Scale, bins: &mut [Bins<N>; 3]) {
+    for prim in prims {
+        let ([x, y, z], bounds) = (scale.buckets(prim), prim.bounds());
+        bins[0].add(x, bounds);
+        bins[1].add(y, bounds);
+        bins[2].add(z, bounds);
     }
-    let join = |a: Bins<N>, b: Bins<N>| std::array::from_fn(|k| std::array::from_fn(|i| a[k][i].join(b[k][i])));
-    let checked = |prims: &[PrimBox]| cx.cancel.check().map(|()| chunk(prims));
-    Ok(prims.par_chunks(CHUNK).map(checked).try_reduce(|| [[EMPTY; N]; 3], |a, b| Ok(join(a, b)))?)
 }
 
-/// Among the first `n` buckets: the first on the right of the plane with the least `half area * count` summed over both
-/// sides, that sum, and the sides' boxes; `None` if all triangles fall into one bucket. One sweep
-/// from the right, one from the left.
-fn cheapest<const N: usize>(bins: &[Bin; N], n: usize) -> Option<(f64, usize, [Bounds; 2])> {
-    let mut right_cost = [0.0; N];
-    let mut right_side = [Bounds::EMPTY; N];
-    let mut right = EMPTY;
+fn count_in_parallel<const N: usize>(prims: &[PrimBox], scale: &Scale, cx: &BuildCx) -> Result<[Bins<N>; 3], BuildError> {
+    let chunk = |mut bins: [Bins<N>; 3], prims: &[PrimBox]| {
+        cx.cancel.check()?;
+        count(prims, scale, &mut bins);
+        Ok(bins)
+    };
+    let join = |mut a: [Bins<N>; 3], b: [Bins<N>; 3]| {
+        a.iter_mut().zip(&b).for_each(|(a, b)| a.join(b));
+        Ok(a)
+    };
+    let none = || [Bins::EMPTY; 3];
+    prims.par_chunks(CHUNK).try_fold(none, chunk).try_reduce(none, join)
+}
+
+/// Among the first `n` buckets: the first on the right of the plane with the least `half area *
+/// count` summed over both sides, that sum, and the sides' boxes; `None` if all triangles fall into
+/// one bucket, or if no plane costs less than `least`. One sweep from the right, one from the left.
+fn cheapest<const N: usize>(bins: &Bins<N>, n: usize, least: f64) -> Option<(f64, usize, [Bounds; 2])> {
+    let mut right_cost = [f64::INFINITY; N];
+    let (mut side, mut count) = (Bounds::EMPTY, 0);
     for i in (1..n).rev() {
-        right = right.join(bins[i]);
-        right_side[i] = right.bounds;
-        right_cost[i] = if right.count == 0 { f64::INFINITY } else { right.cost() };
-    }
-    let mut left = EMPTY;
-    let mut best: Option<(f64, usize, [Bounds; 2])> = None;
-    for first_right in 1..n {
-        left = left.join(bins[first_right - 1]);
-        if left.count == 0 {
-            continue;
-        }
-        let cost = left.cost() + right_cost[first_right];
-        if cost < best.map_or(f64::INFINITY, |b| b.0) {
-            best = Some((cost, first_right, [left.bounds, right_side[first_right]]));
+        side = side.union(bins.bounds[i]);
+        count += bins.counts[i];
+        if count > 0 {
+            right_cost[i] = side.half_area() * f64::from(count);
         }
     }
-    best
+    let (mut left, mut count) = (Bounds::EMPTY, 0);
+    let mut best: Option<(f64, usize, Bounds)> = None;
+    for (first_right, right_cost) in right_cost.iter().enumerate().take(n).skip(1) {
+        left = left.union(bins.bounds[first_right - 1]);
+        count += bins.counts[first_right - 1];
+        if count > 0 {
+            let cost = left.half_area() * f64::from(count) + right_cost;
+            if cost < best.map_or(least, |b| b.0) {
+                best = Some((cost, first_right, left));
+            }
+        }
+    }
+    let (cost, first_right, left) = best?;
+    let right = bins.bounds[first_right..n].iter().fold(Bounds::EMPTY, |b, bin| b.union(*bin));
+    Some((cost, first_right, [left, right]))
 }

@@ -56,6 +56,12 @@ impl Bounds {
         self.min
     }
 
+    /// The greatest corner.
+    #[inline(always)]
+    pub const fn max(&self) -> Vec4 {
+        self.max
+    }
+
     /// The edges.
     #[inline(always)]
     pub fn size(&self) -> Vec4 {

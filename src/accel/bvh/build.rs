@@ -104,11 +104,7 @@ pub fn build(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<
 }
 
 fn too_large(over: OverBudget) -> BuildError {
-    BuildError::Memory {
-        structure: ID,
-        over,
-        remedy: "Raise the memory budget, or use a structure that packs nothing, such as bound.",
-    }
+    BuildError::Memory { structure: ID, over, remedy: "Raise the memory budget, or use grid, which packs no triangles." }
 }
 
 impl Plan {

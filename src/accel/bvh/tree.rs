@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::accel::best::Best;
 use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape};
-use crate::accel::probe::Probe;
+use crate::accel::probe::{Probe, Prune};
 use crate::accel::{PrimHit, Query, Structure};
 use crate::geometry::tri::TriTest;
 use crate::geometry::{Aabb, Ray};
@@ -121,13 +121,24 @@ impl<T: TriTest, const ORDERED: bool, const EARLY_OUT: bool> Bvh<T, ORDERED, EAR
         Self { built, test: PhantomData }
     }
 
-    /// Whether the node is of interest, and where the ray enters it.
+    /// Whether the node at an index is of interest, and where the ray enters it.
     #[inline(always)]
-    fn enter(test: &T, node: &Node, best: &Best, tmax: f32) -> (bool, f32) {
-        let (entry, exit) = test.slabs().interval(&node.bounds());
+    fn enter<P: Probe>(&self, test: &T, at: u32, best: &Best, tmax: f32, probe: &mut P) -> (bool, f32) {
+        let (entry, exit) = test.slabs().interval(&self.built.nodes[at as usize].bounds());
         let end = if EARLY_OUT { best.t() } else { tmax };
         // `&`, not `&&`: three comparisons cost less than a branch that cannot be foreseen.
-        ((entry <= exit) & (entry <= end) & (exit >= best.tmin()), entry)
+        let inside = (entry <= exit) & (entry <= end) & (exit >= best.tmin());
+        if P::LISTENS && !inside {
+            let why = if entry > exit {
+                Prune::Missed
+            } else if entry > tmax || exit < best.tmin() {
+                Prune::Outside
+            } else {
+                Prune::BehindHit
+            };
+            probe.pruned(at, why);
+        }
+        (inside, entry)
     }
 
     fn cell(&self, node: u32, depth: u32) -> Cell {
@@ -150,16 +161,17 @@ impl<T: TriTest, const ORDERED: bool, const EARLY_OUT: bool> Structure for Bvh<T
         let mut stack = [(0u32, 0f32); MAX_DEPTH as usize];
         let mut top = 0;
         let mut current = 0u32;
-        if !nodes.first().is_some_and(|root| Self::enter(&test, root, &best, ray.tmax).0) {
+        if nodes.is_empty() || !self.enter(&test, 0, &best, ray.tmax, probe).0 {
             return None;
         }
         loop {
             let node = &nodes[current as usize];
             probe.node();
+            probe.at(current);
             if node.count == 0 {
                 let (left, right) = (node.first, node.first + 1);
-                let (in_left, at_left) = Self::enter(&test, &nodes[left as usize], &best, ray.tmax);
-                let (in_right, at_right) = Self::enter(&test, &nodes[right as usize], &best, ray.tmax);
+                let (in_left, at_left) = self.enter(&test, left, &best, ray.tmax, probe);
+                let (in_right, at_right) = self.enter(&test, right, &best, ray.tmax, probe);
                 if in_left & in_right {
                     let swap = ORDERED && at_right < at_left;
                     let (near, far) = if swap { (right, (left, at_left)) } else { (left, (right, at_right)) };
@@ -192,6 +204,7 @@ impl<T: TriTest, const ORDERED: bool, const EARLY_OUT: bool> Structure for Bvh<T
                     current = node;
                     break;
                 }
+                probe.pruned(node, Prune::BehindHit);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Möller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection".
 
+use super::block::{Block, Lanes, each, mask};
 use super::{TestKind, TriHit, TriTest};
 use crate::geometry::{Aabb, Ray, Slabs};
 use glam::Vec3;
@@ -47,5 +48,24 @@ impl TriTest for Fast {
         }
         let t = e2.dot(q) * inv;
         t.is_finite().then_some(TriHit { t, u, v })
+    }
+
+    #[inline(always)]
+    fn may_meet(&self, block: &Block) -> u32 {
+        let [a, b, c] = &block.corners;
+        let d = self.dir;
+        let e1 = [0, 1, 2].map(|k| each(|i| b[k][i] - a[k][i]));
+        let e2 = [0, 1, 2].map(|k| each(|i| c[k][i] - a[k][i]));
+        let s = [0, 1, 2].map(|k| each(|i| self.origin[k] - a[k][i]));
+        let p = [(1, 2), (2, 0), (0, 1)].map(|(m, n)| each(|i| d[m] * e2[n][i] - e2[m][i] * d[n]));
+        let q = [(1, 2), (2, 0), (0, 1)].map(|(m, n)| each(|i| s[m][i] * e1[n][i] - e1[m][i] * s[n][i]));
+        let dot = |x: &[Lanes; 3], y: &[Lanes; 3]| each(|i| x[0][i] * y[0][i] + x[1][i] * y[1][i] + x[2][i] * y[2][i]);
+        let inv = dot(&e1, &p).map(|det| 1.0 / det);
+        let u = dot(&s, &p);
+        let v = each(|i| d.x * q[0][i] + d.y * q[1][i] + d.z * q[2][i]);
+        mask(|i| {
+            let (u, v) = (u[i] * inv[i], v[i] * inv[i]);
+            (0.0..=1.0).contains(&u) & (v >= 0.0) & (u + v <= 1.0)
+        })
     }
 }

@@ -5,9 +5,11 @@
 //! accepts and the ray's interval in the triangle's own box is not empty; t is clamped into that
 //! interval, and only then compared with the closed `[tmin, tmax]`.
 
+mod block;
 mod fast;
 mod watertight;
 
+pub use block::{Block, LANES};
 pub use fast::Fast;
 pub use watertight::Watertight;
 
@@ -38,6 +40,10 @@ pub trait TriTest: Copy + Send + Sync + 'static {
 
     /// The bare test, without regard to `[tmin, tmax]` or the triangle's box. Two-sided.
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit>;
+
+    /// Which triangles of a block [`Self::meet`] may accept, a bit for each lane: all that it does
+    /// accept are among them.
+    fn may_meet(&self, block: &Block) -> u32;
 
     /// The whole test, by the rule above.
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2:1).
 
+use super::block::{Block, each, mask};
 use super::{TestKind, TriHit, TriTest};
 use crate::geometry::num::narrow;
 use crate::geometry::{Aabb, Ray, Slabs};
@@ -63,6 +64,26 @@ impl TriTest for Watertight {
         let inv = 1.0 / (u + v + w);
         let t = (u * a.z + v * b.z + w * c.z) * (self.shear.z * inv);
         t.is_finite().then_some(TriHit { t, u: v * inv, v: w * inv })
+    }
+
+    #[inline(always)]
+    fn may_meet(&self, block: &Block) -> u32 {
+        let [kx, ky, kz] = self.axes;
+        let [a, b, c] = block.corners.each_ref().map(|p| {
+            let z = each(|i| p[kz][i] - self.origin[kz]);
+            let x = each(|i| (p[kx][i] - self.origin[kx]) - self.shear.x * z[i]);
+            let y = each(|i| (p[ky][i] - self.origin[ky]) - self.shear.y * z[i]);
+            (x, y)
+        });
+        let u = each(|i| c.0[i] * b.1[i] - c.1[i] * b.0[i]);
+        let v = each(|i| a.0[i] * c.1[i] - a.1[i] * c.0[i]);
+        let w = each(|i| b.0[i] * a.1[i] - b.1[i] * a.0[i]);
+        // A zero is settled in 64 bits later, and may have any sign until then.
+        mask(|i| {
+            let outside = ((u[i] < 0.0) | (v[i] < 0.0) | (w[i] < 0.0)) & ((u[i] > 0.0) | (v[i] > 0.0) | (w[i] > 0.0));
+            let zero = (u[i] == 0.0) | (v[i] == 0.0) | (w[i] == 0.0);
+            !outside | zero
+        })
     }
 }
 

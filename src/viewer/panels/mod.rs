@@ -7,6 +7,7 @@ pub mod menu;
 pub mod overlay;
 pub mod path;
 pub mod scene;
+pub mod selection;
 pub mod statistics;
 pub mod status;
 pub mod structure;

@@ -6,10 +6,12 @@ use std::time::Instant;
 
 use super::State;
 use crate::accel::BuildError;
+use crate::accel::stats::SahWeights;
 use crate::job::Outcome;
 use crate::scene::CameraSpec;
 use crate::viewer::history::{Choices, History, Kind};
 use crate::viewer::model::Model;
+use crate::viewer::pick::Picked;
 use crate::viewer::timings::Timings;
 use crate::viewer::workers;
 
@@ -51,7 +53,8 @@ impl State {
         self.camera = CameraSpec::or_first(self.first_camera.take().as_ref(), &model.scene, &model.geometry, self.aspect());
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
         (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
-        (self.picking, self.picked) = (None, None);
+        self.picking = None;
+        self.select(None);
         (self.seen, self.counted) = (None, None);
         (self.cameras, self.choices) = (History::default(), History::default());
         self.kept.clear();
@@ -129,6 +132,28 @@ impl State {
             Outcome::Died => {}
         }
         self.picking = None;
+    }
+
+    /// The SAH curves of what is selected.
+    pub(super) fn advance_curves(&mut self) {
+        match self.curving.take() {
+            Some((id, job)) => match job.poll() {
+                Outcome::Running => self.curving = Some((id, job)),
+                Outcome::Done(Ok(curves)) => self.curves = Some((id, curves)),
+                Outcome::Done(Err(_)) | Outcome::Died => self.curves = Some((id, None)),
+            },
+            None => {
+                let selected = self.picked.as_ref().and_then(Picked::selected).copied();
+                if let (Some(cell), Some(shown)) = (selected, &self.shown)
+                    && self.curves.as_ref().is_none_or(|c| c.0 != cell.id)
+                    && self.measuring.is_none()
+                {
+                    let weights = SahWeights::of(&shown.key.params);
+                    let job = workers::curves(&self.shared, Arc::clone(&shown.accel), cell, weights);
+                    self.curving = job.ok().map(|job| (cell.id, job));
+                }
+            }
+        }
     }
 
     pub(super) fn advance_measuring(&mut self) {

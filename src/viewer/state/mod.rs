@@ -20,8 +20,9 @@ use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
 use super::settings::Settings;
 use super::timings::Timings;
-use super::workers::{self, Building, Collecting, Counting, Loading, Measuring, Picking, Plan, Shared};
-use crate::accel::cell;
+use super::workers::{self, Building, Collecting, Counting, Curving, Loading, Measuring, Picking, Plan, Shared};
+use crate::accel::{CellId, cell};
+use crate::lab::SahCurves;
 use crate::render::{self, Mode, Picture, Range, Renderer};
 use crate::scene::{Camera, CameraSpec};
 use crate::task::Pool;
@@ -93,6 +94,9 @@ pub struct State {
     dialog: Box<dyn FileDialog>,
     asked_for_file: Option<Receiver<Option<PathBuf>>>,
     picking: Option<Picking>,
+    /// The SAH curves of the selected cell, once they are worked out.
+    pub curves: Option<(CellId, Option<SahCurves>)>,
+    curving: Option<(CellId, Curving)>,
     renderer: Renderer,
     requested: Option<Asked>,
     requested_at: Instant,
@@ -171,6 +175,8 @@ impl State {
             dialog,
             asked_for_file: None,
             picking: None,
+            curves: None,
+            curving: None,
             renderer,
             requested: None,
             requested_at: Instant::now(),
@@ -258,6 +264,10 @@ impl State {
                 self.restore(after);
             }
             Command::Pick(at) => self.pick(at),
+            Command::SelectLevel(level) => {
+                let picked = self.picked.clone().map(|p| Picked { level: level.min(p.path.len().saturating_sub(1)), ..p });
+                self.select(picked);
+            }
             Command::FrameAll => self.frame_all(),
             Command::ToggleProjection => self.look(navigation::toggle_projection(&self.camera), Kind::Single),
             Command::MaxSamples(n) => self.settings.max_samples = n.max(1),
@@ -300,6 +310,7 @@ impl State {
     fn select(&mut self, picked: Option<Picked>) {
         self.picked = picked;
         self.collected_for = None;
+        (self.curves, self.curving) = (None, None);
     }
 
     fn frame_all(&mut self) {
@@ -360,7 +371,8 @@ impl State {
     fn show(&mut self, built: Built) {
         self.before = self.nodes_per_ray();
         self.change = None;
-        (self.picking, self.picked) = (None, None);
+        self.picking = None;
+        self.select(None);
         self.shown = Some(built);
         // A depth that the new structure does not have would show nothing.
         self.clamp_depth();
@@ -410,6 +422,7 @@ impl State {
         self.advance_load();
         self.advance_build();
         self.advance_picking();
+        self.advance_curves();
         self.advance_measuring();
         self.refresh_picture();
         self.advance_statistics();

@@ -8,6 +8,7 @@ use crate::job::Outcome;
 use crate::render::{self, Picture, Request};
 use crate::viewer::gpu::{Overlay, View};
 use crate::viewer::overlay::Wanted;
+use crate::viewer::pick::Picked;
 use crate::viewer::{format, workers};
 
 impl State {
@@ -81,7 +82,7 @@ impl State {
                 Outcome::Done(Ok(mut collected)) => {
                     self.generation += 1;
                     let overlay = std::mem::take(&mut collected.overlay);
-                    let selected = self.picked.as_ref().and_then(|p| p.leaf);
+                    let selected = self.picked.as_ref().and_then(Picked::selected_box);
                     self.overlay = Some(Arc::new(Overlay { generation: self.generation, selected, ..overlay }));
                     self.collected = collected;
                     self.collected_for = Some((wanted, key));

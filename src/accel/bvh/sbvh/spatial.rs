@@ -48,27 +48,34 @@ const EMPTY: Slab = Slab { bounds: Bounds::EMPTY, enter: 0, exit: 0 };
 
 type Slabs = Vec<[Slab; 3]>;
 
-/// Where the slabs of a node are.
+/// Where the slabs of a node are on an axis.
 struct Ruler {
-    bounds: Bounds,
+    /// The planes between slabs, the box's own faces at the ends.
+    planes: [f32; MAX + 1],
     bins: usize,
+    min: f32,
+    per_unit: f32,
 }
 
 impl Ruler {
-    /// The plane before the `i`-th slab; the first and the last are the box's own.
-    fn plane(&self, axis: usize, i: usize) -> f32 {
-        let (min, size) = (f64::from(self.bounds.min()[axis]), f64::from(self.bounds.size()[axis]));
-        num::narrow(min + size * i as f64 / self.bins as f64)
+    fn new(bounds: &Bounds, axis: usize, bins: usize) -> Self {
+        let (min, size) = (bounds.min()[axis], f64::from(bounds.size()[axis]));
+        let mut planes = [min; MAX + 1];
+        let step = size / bins as f64;
+        for (i, plane) in planes.iter_mut().enumerate().take(bins + 1) {
+            *plane = num::narrow(f64::from(min) + step * i as f64);
+        }
+        Self { planes, bins, min, per_unit: num::narrow(1.0 / step) }
     }
 
-    /// The slab of a coordinate, found so that it agrees with [`Self::plane`].
-    fn slab(&self, axis: usize, x: f32) -> usize {
-        let (min, size) = (f64::from(self.bounds.min()[axis]), f64::from(self.bounds.size()[axis]));
-        let mut at = num::floor_index((f64::from(x) - min) / size * self.bins as f64, self.bins - 1);
-        while at > 0 && x < self.plane(axis, at) {
+    /// The slab of a coordinate: the last whose plane is not after it.
+    #[inline(always)]
+    fn slab(&self, x: f32) -> usize {
+        let mut at = num::floor_index(f64::from((x - self.min) * self.per_unit), self.bins - 1);
+        while at > 0 && x < self.planes[at] {
             at -= 1;
         }
-        while at + 1 < self.bins && x >= self.plane(axis, at + 1) {
+        while at + 1 < self.bins && x >= self.planes[at + 1] {
             at += 1;
         }
         at
@@ -78,12 +85,15 @@ impl Ruler {
 impl Spatial<'_> {
     /// The cheapest plane that leaves both sides some reference, if there is one.
     pub fn best(&self, refs: &[PrimBox], bounds: &Bounds, cx: &BuildCx) -> Result<Option<Cut>, BuildError> {
-        let bins = (self.bins as usize).min(refs.len().max(4)).min(MAX);
-        let ruler = Ruler { bounds: *bounds, bins };
-        let axes: Vec<usize> = (0..3).filter(|k| bounds.size()[*k] > 0.0).collect();
+        // Few references need few planes, and are cut by every one that they cross.
+        let bins = (self.bins as usize).min(refs.len().clamp(4, if refs.len() < 256 { 16 } else { MAX }));
+        let rulers = [0, 1, 2].map(|axis| Ruler::new(bounds, axis, bins));
+        let wide = |axis: &usize| bounds.size()[*axis] > 0.0;
         let chunk = |refs: &[PrimBox]| {
             let mut slabs: Slabs = vec![[EMPTY; 3]; bins];
-            refs.iter().for_each(|r| axes.iter().for_each(|axis| self.sort_in(r, &ruler, *axis, &mut slabs)));
+            for axis in (0..3).filter(wide) {
+                refs.iter().for_each(|r| self.sort_in(r, &rulers[axis], axis, &mut slabs));
+            }
             slabs
         };
         let slabs = if refs.len() < PARALLEL {
@@ -93,14 +103,14 @@ impl Spatial<'_> {
             let parts: Result<Vec<Slabs>, _> = refs.par_chunks(CHUNK).map(checked).collect();
             parts?.into_iter().reduce(joined).unwrap_or_default()
         };
-        let cuts = axes.iter().filter_map(|axis| cheapest(&slabs, &ruler, *axis));
+        let cuts = (0..3).filter(wide).filter_map(|axis| cheapest(&slabs, &rulers[axis], axis));
         Ok(cuts.min_by(|a, b| a.children.total_cmp(&b.children)))
     }
 
     /// Cuts a reference at every plane that it crosses on an axis, and sorts the parts in.
     fn sort_in(&self, r: &PrimBox, ruler: &Ruler, axis: usize, slabs: &mut Slabs) {
         let b = r.bounds();
-        let (first, last) = (ruler.slab(axis, b.min()[axis]), ruler.slab(axis, b.aabb().max[axis]));
+        let (first, last) = (ruler.slab(b.min()[axis]), ruler.slab(b.max()[axis]));
         slabs[first][axis].enter += 1;
         slabs[last][axis].exit += 1;
         if first == last {
@@ -111,7 +121,7 @@ impl Spatial<'_> {
         let mut rest = Some(*r);
         for (i, slab) in slabs.iter_mut().enumerate().take(last).skip(first) {
             let Some(part) = rest else { return };
-            let [below, above] = cut(&part, &corners, axis, ruler.plane(axis, i + 1));
+            let [below, above] = cut(&part, &corners, axis, ruler.planes[i + 1]);
             if let Some(below) = below {
                 slab[axis].bounds = slab[axis].bounds.union(below.bounds());
             }
@@ -131,7 +141,7 @@ impl Spatial<'_> {
             cx.cancel.check()?;
             for r in chunk {
                 let b = r.bounds();
-                if b.aabb().max[plane.axis] <= plane.pos && b.min()[plane.axis] < plane.pos {
+                if b.max()[plane.axis] <= plane.pos && b.min()[plane.axis] < plane.pos {
                     left.push(*r);
                     continue;
                 }
@@ -193,7 +203,7 @@ fn cheapest(slabs: &Slabs, ruler: &Ruler, axis: usize) -> Option<Cut> {
         }
         let children = left.0.half_area() * left.1 as f64 + right.0.half_area() * right.1 as f64;
         if children < best.map_or(f64::INFINITY, |b| b.children) {
-            best = Some(Cut { axis, pos: ruler.plane(axis, first_right), children, sides: [left, right] });
+            best = Some(Cut { axis, pos: ruler.planes[first_right], children, sides: [left, right] });
         }
     }
     best
