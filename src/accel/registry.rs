@@ -116,6 +116,15 @@ pub const ALL: &[Entry] = &[
         watertight: grid::build::<Watertight>,
         fast: grid::build::<Fast>,
     },
+    Entry {
+        id: "grid2",
+        name: "Two-level grid",
+        family: Family::Grid,
+        help: "A coarse grid whose cells are cut into grids of their own, finer where there is more.",
+        params: grid::TWO_LEVEL_PARAMS,
+        watertight: grid::build_two_level::<Watertight>,
+        fast: grid::build_two_level::<Fast>,
+    },
 ];
 
 fn brute<T: TriTest, const BOUND: bool>(
