@@ -344,6 +344,13 @@ fn every_switch_gives_the_same_hits() {
         ("kdtree", &[("max_leaf", "1"), ("empty_bonus", "0.9"), ("c_isect", "20")]),
         ("grid", &[("density", "0.01")]),
         ("grid", &[("density", "64")]),
+        ("grid2", &[("density", "0.001"), ("leaf_density", "64")]),
+        ("grid2", &[("density", "16"), ("leaf_density", "0.01")]),
+        ("grid2", &[("density", "1"), ("leaf_density", "1")]),
+        ("octree", &[("max_depth", "0")]),
+        ("octree", &[("max_depth", "3"), ("max_leaf", "1")]),
+        ("octree", &[("max_leaf", "1"), ("max_refs", "256"), ("c_trav", "0.01")]),
+        ("octree", &[("max_refs", "1"), ("c_isect", "100")]),
     ];
     for (id, set) in settings {
         let entry = registry::find(id).expect("registered");

@@ -134,6 +134,28 @@ pub enum Layout {
         /// A cell also holds triangles that come this near to it, in the scaled space.
         slack: f32,
     },
+    /// The same in two levels: a cell may be cut into cells of its own, which the ray steps through
+    /// while it is inside.
+    Nested {
+        /// As in [`Layout::Flat`].
+        slack: f32,
+    },
+}
+
+impl Layout {
+    /// Whether nodes bound what is in them and may overlap, rather than divide space.
+    pub const fn nests(&self) -> bool {
+        matches!(self, Self::Hierarchy | Self::SplitHierarchy)
+    }
+
+    /// How near to a cell a triangle has to come to be held by it, where the ray steps from cell to
+    /// cell; `None` where it descends a tree.
+    pub const fn slack(&self) -> Option<f32> {
+        match self {
+            Self::Hierarchy | Self::SplitHierarchy | Self::Partition => None,
+            Self::Flat { slack, .. } | Self::Nested { slack } => Some(*slack),
+        }
+    }
 }
 
 /// What overlays, the tree, statistics and validation walk.

@@ -13,6 +13,7 @@ pub mod cell;
 mod grid;
 mod hit;
 mod kdtree;
+mod octree;
 pub mod params;
 pub mod probe;
 pub mod registry;

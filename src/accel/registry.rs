@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::params::{Param, ParamValues};
-use super::{Accel, BuildCx, BuildError, brute, bvh, grid, kdtree};
+use super::{Accel, BuildCx, BuildError, brute, bvh, grid, kdtree, octree};
 use crate::geometry::tri::{Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 
@@ -115,6 +115,24 @@ pub const ALL: &[Entry] = &[
         params: grid::PARAMS,
         watertight: grid::build::<Watertight>,
         fast: grid::build::<Fast>,
+    },
+    Entry {
+        id: "grid2",
+        name: "Two-level grid",
+        family: Family::Grid,
+        help: "A coarse grid whose cells are cut into grids of their own, finer where there is more.",
+        params: grid::TWO_LEVEL_PARAMS,
+        watertight: grid::build_two_level::<Watertight>,
+        fast: grid::build_two_level::<Fast>,
+    },
+    Entry {
+        id: "octree",
+        name: "Octree",
+        family: Family::Octree,
+        help: "Space divided in the middle on every axis, again and again where there are triangles.",
+        params: octree::PARAMS,
+        watertight: octree::build::<Watertight>,
+        fast: octree::build::<Fast>,
     },
 ];
 

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::cell::{Cells, Descend, Layout, MemoryPart, walk};
+use super::cell::{Cells, Descend, MemoryPart, walk};
 use super::params::{C_ISECT, C_TRAV, Param, ParamValues, Value};
 use crate::task::{Cancel, Cancelled};
 
@@ -48,7 +48,7 @@ pub struct Stats {
     pub references: u64,
     /// The expected cost of a random line through the root (MacDonald and Booth 1990):
     /// `sum over inner nodes of C_trav A(n)/A(root) + sum over leaves of C_isect prims A(n)/A(root)`;
-    /// a grid charges C_trav for every cell instead.
+    /// a grid charges C_trav for every cell but the root instead, since a ray steps into each.
     pub sah: f64,
     /// The number of leaves with k references at k; the last entry counts all larger ones.
     pub leaf_sizes: Vec<u64>,
@@ -67,7 +67,7 @@ impl Stats {
     /// # Errors
     /// [`Cancelled`] if asked to stop.
     pub fn of(cells: &dyn Cells, weights: SahWeights, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let flat = matches!(cells.layout(), Layout::Flat { .. });
+        let stepped = cells.layout().slack().is_some();
         let mut stats = Self { memory: cells.memory(), leaf_sizes: vec![0; LEAF_SIZES], ..Self::default() };
         let mut cost = 0.0;
         let mut cancelled = Ok(());
@@ -80,8 +80,9 @@ impl Stats {
             if cell.is_leaf() {
                 let prims = cell.prims();
                 stats.leaf(cell.depth, prims);
-                cost += area * (weights.c_isect * f64::from(prims) + if flat { weights.c_trav } else { 0.0 });
-            } else if !flat {
+                cost += area * weights.c_isect * f64::from(prims);
+            }
+            if if stepped { cell.depth > 0 } else { !cell.is_leaf() } {
                 cost += area * weights.c_trav;
             }
             if cancelled.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(Descend::Yes) }

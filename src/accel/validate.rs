@@ -52,9 +52,10 @@ pub fn defects(cells: &dyn Cells, geometry: &Geometry, limit: usize) -> Vec<Defe
             return ControlFlow::Break(());
         }
         let bounds = *cell.shape.bounds();
-        if !matches!(cells.layout(), Layout::Flat { .. }) {
+        // A grid is a little larger than what it was made for.
+        if cells.layout().slack().is_none() || cell.depth > 0 {
             cells.children(cell, &mut |child| {
-                if !bounds.contains_box(child.shape.bounds()) {
+                if !taken_in(bounds, cells.layout()).contains_box(child.shape.bounds()) {
                     found.push(Defect::Outside { child: child.id.node, parent: cell.id.node });
                 }
                 ControlFlow::Continue(())
@@ -86,7 +87,7 @@ pub fn defects(cells: &dyn Cells, geometry: &Geometry, limit: usize) -> Vec<Defe
 
 /// The cell with what its layout says it takes in, and the rounding of its box to 32 bits.
 fn taken_in(b: Aabb, layout: Layout) -> Aabb {
-    let Layout::Flat { slack, .. } = layout else { return b };
+    let Some(slack) = layout.slack() else { return b };
     let room = glam::Vec3::splat(slack * 1.01) + 2.0 * f32::EPSILON * b.min.abs().max(b.max.abs());
     Aabb { min: b.min - room, max: b.max + room }
 }

@@ -22,6 +22,8 @@ pub struct Lattice {
 
 /// The most cells along an axis.
 const MAX_RESOLUTION: f64 = 4096.0;
+/// The most along an axis of a lattice inside a cell, so that eight bits hold it.
+const MAX_WITHIN: f64 = 255.0;
 
 impl Lattice {
     /// About `density` cells for each of `prims` triangles over `bounds`, as near to cubes as that
@@ -32,12 +34,28 @@ impl Lattice {
         let slack = (12.0 * f64::from(num::UNIT_ROUNDOFF) * reach).max(f64::from(f32::MIN_POSITIVE));
         let size = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max(DVec3::splat(slack));
         let wanted = (density * prims as f64).max(1.0);
-        let resolution = resolution(size, wanted, slack);
+        let resolution = resolution(size, wanted, slack, MAX_RESOLUTION);
         // A little room, so that no rounding puts anything on the outermost planes.
         let room = DVec3::splat(2.0 * slack);
         let (min, size) = (bounds.min.as_dvec3() - room, size + 2.0 * room);
         let per_axis = DVec3::new(resolution[0] as f64, resolution[1] as f64, resolution[2] as f64);
         Self { min, cell: size / per_axis, resolution, slack }
+    }
+
+    /// Cells along each axis for a lattice inside one of this one's cells, with about `density` cells
+    /// for each of `refs` references.
+    pub fn resolution_within(&self, refs: u32, density: f64) -> [u8; 3] {
+        let resolution = resolution(self.cell, (density * f64::from(refs)).max(1.0), self.slack, MAX_WITHIN);
+        resolution.map(|n| u8::try_from(n).unwrap_or(u8::MAX))
+    }
+
+    /// The lattice inside a cell, of at least one cell along each axis.
+    #[inline(always)]
+    pub fn within(&self, at: [usize; 3], resolution: [u8; 3]) -> Self {
+        let min = DVec3::new(self.plane(0, at[0]), self.plane(1, at[1]), self.plane(2, at[2]));
+        let [x, y, z] = resolution;
+        let per_axis = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+        Self { min, cell: self.cell / per_axis, resolution: resolution.map(usize::from), slack: self.slack }
     }
 
     /// The number of cells.
@@ -75,6 +93,12 @@ impl Lattice {
         Aabb { min: corner(0).as_vec3(), max: corner(1).as_vec3() }
     }
 
+    /// Whether a box lies inside.
+    pub fn holds(&self, b: &Aabb) -> bool {
+        let inside = |k| f64::from(b.min[k]) >= self.plane(k, 0) && f64::from(b.max[k]) <= self.plane(k, self.resolution[k]);
+        inside(0) && inside(1) && inside(2)
+    }
+
     /// The layers that an interval on an axis comes within `slack` of, both ends included.
     pub fn layers(&self, axis: usize, from: f32, to: f32) -> (usize, usize) {
         (self.layer(axis, f64::from(from) - self.slack), self.layer(axis, f64::from(to) + self.slack))
@@ -83,7 +107,7 @@ impl Lattice {
 
 /// Cells along each axis for about `wanted` in all. An axis too short for two cells gets one, and
 /// the others share what it leaves; no cell is smaller than a few times the slack.
-fn resolution(size: DVec3, wanted: f64, slack: f64) -> [usize; 3] {
+fn resolution(size: DVec3, wanted: f64, slack: f64, most: f64) -> [usize; 3] {
     let mut long = [true; 3];
     loop {
         let axes = long.iter().filter(|l| **l).count();
@@ -91,7 +115,7 @@ fn resolution(size: DVec3, wanted: f64, slack: f64) -> [usize; 3] {
         let edge = (volume / wanted).powf(1.0 / axes.max(1) as f64).max(8.0 * slack);
         let Some(short) = (0..3).find(|k| long[*k] && size[*k] < edge) else {
             return std::array::from_fn(|k| {
-                let cells = if long[k] { (size[k] / edge).round().clamp(1.0, MAX_RESOLUTION) } else { 1.0 };
+                let cells = if long[k] { (size[k] / edge).round().clamp(1.0, most) } else { 1.0 };
                 num::floor_index(cells, num::MAX_INDEX)
             });
         };
@@ -112,6 +136,18 @@ mod tests {
         assert_eq!(Lattice::new(&flat, 100, 1.0).resolution, [10, 10, 1], "a flat scene gets one layer");
         let point = Lattice::new(&Aabb { min: Vec3::ONE, max: Vec3::ONE }, 0, 4.0);
         assert_eq!(point.count(), 1);
+    }
+
+    #[test]
+    fn a_lattice_in_a_cell_fills_it() {
+        let lattice = Lattice::new(&Aabb { min: Vec3::ZERO, max: Vec3::new(3.0, 2.0, 1.0) }, 50, 1.0);
+        let at = [2, 1, 0];
+        let within = lattice.within(at, lattice.resolution_within(100, 2.0));
+        let (outer, count) = (lattice.bounds(at), within.count());
+        assert!((100..400).contains(&count), "{count}");
+        assert_eq!(within.bounds([0; 3]).min, outer.min);
+        assert!(within.bounds(within.resolution.map(|n| n - 1)).max.distance(outer.max) <= f32::EPSILON);
+        assert_eq!(lattice.resolution_within(0, 64.0), [1; 3], "an empty cell stays whole");
     }
 
     #[test]

@@ -23,12 +23,14 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
                 .on_hover_text("Cells without triangles: a ray steps through them all the same.");
             ui.label(format!("{x} × {y} × {z} cells")).on_hover_text("Cells along x, y and z. A grid has no depth.");
         }
-        Layout::Hierarchy | Layout::SplitHierarchy | Layout::Partition => {
-            let boxes = if layout == Layout::Partition { "Cells" } else { "Node boxes" };
+        Layout::Hierarchy | Layout::SplitHierarchy | Layout::Partition | Layout::Nested { .. } => {
+            let boxes = if layout.nests() { "Node boxes" } else { "Cells" };
             ui.checkbox(&mut s.boxes, boxes).on_hover_text("The box of each node at the chosen depth.");
             ui.checkbox(&mut s.leaves_only, "Leaves only").on_hover_text("The boxes that hold triangles, at any depth.");
-            if layout == Layout::Partition {
+            if layout == Layout::Partition && has_split_planes(state) {
                 ui.checkbox(&mut s.planes, "Split planes").on_hover_text("The planes that divide the cells at the chosen depth.");
+            }
+            if !layout.nests() {
                 ui.checkbox(&mut s.empty_cells, "Empty cells too").on_hover_text("Leaves without triangles.");
             }
             let deepest = super::toolbar::deepest(state);
@@ -49,4 +51,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if s != before {
         commands.push(Command::Overlay(s));
     }
+}
+
+/// Whether cells are divided by one plane each, which can be drawn: an octree's are not. A tree that
+/// is one leaf does not say how it would divide.
+fn has_split_planes(state: &State) -> bool {
+    state.shown.as_ref().map(|b| b.accel.root()).is_some_and(|root| root.is_leaf() || root.split.is_some())
 }

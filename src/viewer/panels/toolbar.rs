@@ -66,7 +66,7 @@ fn slice(ui: &mut Ui, state: &State, resolution: [u32; 3], commands: &mut Comman
 
 fn depth(ui: &mut Ui, state: &State, commands: &mut Commands) {
     match state.layout() {
-        Some(Layout::Hierarchy | Layout::SplitHierarchy | Layout::Partition) => {}
+        Some(Layout::Hierarchy | Layout::SplitHierarchy | Layout::Partition | Layout::Nested { .. }) => {}
         Some(Layout::Flat { resolution, .. }) => return slice(ui, state, resolution, commands),
         None => return,
     }
