@@ -211,14 +211,7 @@ impl Tree {
     }
 
     /// Adds a node, those from the root to the last one being `open`.
-    fn add(
-        &mut self,
-        cells: &dyn Cells,
-        cell: &Cell,
-        weights: SahWeights,
-        open: &mut Vec<u32>,
-        cx: &EpoCx,
-    ) -> Result<(), NoEpo> {
+    fn add(&mut self, cells: &dyn Cells, cell: &Cell, weights: SahWeights, open: &mut Vec<u32>, cx: &EpoCx) -> Result<(), NoEpo> {
         let Shape::Box(bounds) = cell.shape else { return Err(NoEpo::NoBoxes) };
         self.make_room(cell.prims() as usize, cx)?;
         let at = num::index(self.nodes.len());
