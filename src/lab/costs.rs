@@ -8,14 +8,14 @@
 //! mixture of steps and tests differs, which is what tells the two costs apart. C_trav is charged for
 //! every node entered, leaves among them, since that is what is counted.
 
-use std::ops::Range;
 use std::time::Instant;
 
 use super::estimate::secs_per_ray;
 use super::least_squares::non_negative;
 use super::measure::Contestant;
-use super::rays::RaySet;
+use super::rays::{RayKind, RaySet};
 use super::sample::spread;
+use crate::accel::Mode;
 use crate::accel::probe::Counts;
 use crate::geometry::{Ray, num};
 use crate::task::{Cancel, Cancelled, Pool, Progress};
@@ -97,24 +97,30 @@ pub fn fit_costs(
             progress.advance(1);
         }
     }
-    let fitted = lanes.iter().map(|lane| pool.run(|| lane.fit(cancel))).collect();
+    let fitted = lanes.iter().map(|lane| lane.fit(cancel)).collect();
     progress.finish();
     fitted
 }
 
-/// A structure, its blocks of rays and the least seconds of each.
+/// Neighbouring rays of one kind.
+struct Block {
+    mode: Mode,
+    rays: Vec<Ray>,
+    /// The least seconds of all passes.
+    secs: f64,
+}
+
+/// A structure and its blocks of rays.
 struct Lane<'a> {
     contestant: &'a Contestant,
-    sets: &'a [&'a RaySet],
     rays_per_block: usize,
-    blocks: Vec<(usize, Range<usize>)>,
-    secs: Vec<f64>,
+    blocks: Vec<Block>,
 }
 
 impl<'a> Lane<'a> {
     fn new(
         contestant: &'a Contestant,
-        sets: &'a [&'a RaySet],
+        sets: &[&RaySet],
         options: &FitOptions,
         pool: &Pool,
         cancel: &Cancel,
@@ -124,27 +130,29 @@ impl<'a> Lane<'a> {
             let secs = secs_per_ray(contestant, set, pool, cancel)?;
             slowest = slowest.max(if secs.is_finite() { secs * pool.threads() as f64 } else { 0.0 });
         }
-        let passes = ((options.rounds + 2) * sets.len().max(1) * BLOCKS) as f64;
+        // Beside the timed passes one to warm up, and two that count.
+        let passes = ((options.rounds + 3) * sets.len().max(1) * BLOCKS) as f64;
         let rays_per_block = num::floor_index(options.cap_secs / (passes * slowest.max(1e-12)), RAYS);
-        let blocks = (0..sets.len()).flat_map(|set| blocks_of(sets[set], rays_per_block).map(move |block| (set, block)));
-        let blocks: Vec<(usize, Range<usize>)> = blocks.collect();
-        Ok(Self { contestant, sets, rays_per_block, secs: vec![f64::INFINITY; blocks.len()], blocks })
-    }
-
-    fn rays(&self, block: &(usize, Range<usize>)) -> &'a [Ray] {
-        &self.sets[block.0].rays[block.1.clone()]
+        let mut blocks = Vec::new();
+        for set in sets {
+            let rays = match set.kind {
+                RayKind::Lines => by_mixture(contestant, set, rays_per_block, cancel)?,
+                _ => neighbours(set, rays_per_block),
+            };
+            let of = |rays: &[Ray]| Block { mode: set.mode, rays: rays.to_vec(), secs: f64::INFINITY };
+            blocks.extend(rays.chunks_exact(rays_per_block.max(1)).map(of));
+        }
+        Ok(Self { contestant, rays_per_block, blocks })
     }
 
     /// Traces every block once.
     fn round(&mut self, timed: bool, cancel: &Cancel) -> Result<(), Cancelled> {
         let mut hits = vec![None; self.rays_per_block];
-        for i in 0..self.blocks.len() {
-            let (rays, mode) = (self.rays(&self.blocks[i]), self.sets[self.blocks[i].0].mode);
+        for Block { mode, rays, secs } in &mut self.blocks {
             let start = Instant::now();
-            self.contestant.accel.trace(rays, mode, &mut hits[..rays.len()], cancel)?;
-            let secs = start.elapsed().as_secs_f64();
+            self.contestant.accel.trace(rays, *mode, &mut hits, cancel)?;
             if timed {
-                self.secs[i] = self.secs[i].min(secs);
+                *secs = secs.min(start.elapsed().as_secs_f64());
             }
         }
         Ok(())
@@ -152,12 +160,11 @@ impl<'a> Lane<'a> {
 
     fn fit(&self, cancel: &Cancel) -> Result<Option<Costs>, Cancelled> {
         let (mut rows, mut nanos) = (Vec::new(), Vec::new());
-        for (block, secs) in self.blocks.iter().zip(&self.secs) {
-            let (rays, mode) = (self.rays(block), self.sets[block.0].mode);
+        for Block { mode, rays, secs } in &self.blocks {
             let mut counts = Counts::default();
             for ray in rays {
                 cancel.check()?;
-                self.contestant.accel.trace_watched(ray, mode, &mut counts);
+                self.contestant.accel.trace_watched(ray, *mode, &mut counts);
             }
             let n = rays.len() as f64;
             rows.push([counts.nodes as f64 / n, counts.prims as f64 / n, 1.0]);
@@ -165,7 +172,6 @@ impl<'a> Lane<'a> {
         }
         let Some(fit) = non_negative(&rows, &nanos) else { return Ok(None) };
         let ([c_trav_ns, c_isect_ns, c0_ns], [c_trav_error_ns, c_isect_error_ns, c0_error_ns]) = (fit.coefficients, fit.errors);
-        let (r_squared, blocks, rays_per_block) = (fit.explained, rows.len(), self.rays_per_block);
         Ok(Some(Costs {
             c_trav_ns,
             c_trav_error_ns,
@@ -173,15 +179,53 @@ impl<'a> Lane<'a> {
             c_isect_error_ns,
             c0_ns,
             c0_error_ns,
-            r_squared,
-            blocks,
-            rays_per_block,
+            r_squared: fit.explained,
+            blocks: rows.len(),
+            rays_per_block: self.rays_per_block,
         }))
     }
 }
 
-/// Runs of neighbouring rays, evenly spread over the set; none if the set is shorter than one.
-fn blocks_of(set: &RaySet, rays: usize) -> impl Iterator<Item = Range<usize>> + use<> {
+/// Runs of neighbouring rays, evenly spread over the set, one after the other; none if the set is
+/// shorter than one.
+fn neighbours(set: &RaySet, rays: usize) -> Vec<Ray> {
     let places = set.rays.len().checked_div(rays).unwrap_or(0);
-    spread(places, BLOCKS).into_iter().map(move |place| place * rays..(place + 1) * rays)
+    spread(places, BLOCKS).into_iter().flat_map(|place| &set.rays[place * rays..(place + 1) * rays]).copied().collect()
+}
+
+/// Rays that are no neighbours anyway, sorted by how many tests there are to a step: so blocks differ
+/// in what they mix, and the costs are told apart. Which rays share a block goes by counts alone, never
+/// by times, so it favours no cost.
+fn by_mixture(contestant: &Contestant, set: &RaySet, rays: usize, cancel: &Cancel) -> Result<Vec<Ray>, Cancelled> {
+    let mut mixed = Vec::new();
+    for ray in set.rays.iter().take(rays * BLOCKS) {
+        cancel.check()?;
+        let mut counts = Counts::default();
+        contestant.accel.trace_watched(ray, set.mode, &mut counts);
+        mixed.push((counts.prims as f64 / counts.nodes.max(1) as f64, *ray));
+    }
+    mixed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(mixed.into_iter().map(|(_, ray)| ray).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ratio_needs_both_costs() {
+        let costs = |c_trav_ns, c_isect_ns| Costs { c_trav_ns, c_isect_ns, ..Costs::default() };
+        assert_eq!(costs(4.0, 10.0).ratio(), Some(2.5));
+        assert!([costs(0.0, 1.0), costs(1.0, 0.0), costs(0.0, 0.0), costs(f64::NAN, 1.0)].iter().all(|c| c.ratio().is_none()));
+    }
+
+    #[test]
+    fn blocks_are_whole_and_evenly_spread() {
+        let ray = |i: u16| Ray::new(glam::Vec3::X * f32::from(i), glam::Vec3::X);
+        let set = RaySet { kind: RayKind::Primary, mode: Mode::Closest, rays: (0..1000).map(ray).collect() };
+        let few = neighbours(&set, 5);
+        assert_eq!(few.len(), BLOCKS * 5);
+        assert!(few.chunks(5).all(|block| block.windows(2).all(|pair| pair[1].origin.x == pair[0].origin.x + 1.0)));
+        assert!(neighbours(&set, 0).is_empty() && neighbours(&set, 1001).is_empty() && neighbours(&set, 1000).len() == 1000);
+    }
 }
