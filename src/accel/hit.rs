@@ -60,6 +60,20 @@ pub struct Closest;
 #[derive(Clone, Copy, Debug)]
 pub struct AnyHit;
 
+/// Nothing counts as a hit, so nothing cuts the traversal short: what the surface area heuristic
+/// assumes of a ray. For counting only.
+#[derive(Clone, Copy, Debug)]
+pub struct Nothing;
+
+impl Query for Nothing {
+    const ANY: bool = false;
+
+    #[inline(always)]
+    fn accept(&self, _: &PrimHit) -> bool {
+        false
+    }
+}
+
 impl Query for Closest {
     const ANY: bool = false;
 }

@@ -10,6 +10,7 @@ mod brute;
 mod build;
 mod bvh;
 pub mod cell;
+pub mod epo;
 mod grid;
 mod hit;
 mod kdtree;
@@ -22,7 +23,7 @@ pub mod validate;
 
 pub use build::{BuildCx, BuildError};
 pub use cell::{Cell, CellId, CellKind, Cells, MemoryPart, Shape, Split};
-pub use hit::{AnyHit, Closest, Hit, Mode, PrimHit, Query};
+pub use hit::{AnyHit, Closest, Hit, Mode, Nothing, PrimHit, Query};
 pub use probe::{Prune, Step};
 
 use std::sync::Arc;
@@ -92,6 +93,10 @@ pub trait Accel: Cells {
     fn trace_watched(&self, ray: &Ray, mode: Mode, counts: &mut Counts) -> Option<Hit> {
         self.trace_heard(ray, mode, &mut Watched { counts, listener: None })
     }
+
+    /// Follows one world ray to its end, no hit cutting it short, and counts what the traversal does:
+    /// what [`stats::Stats::expected_nodes`] predicts of random lines.
+    fn count_uncut(&self, ray: &Ray, counts: &mut Counts);
 }
 
 impl<S: Structure> Accel for S {
@@ -115,6 +120,11 @@ impl<S: Structure> Accel for S {
             })
         };
         in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local).unwrap_or(None)
+    }
+
+    fn count_uncut(&self, ray: &Ray, counts: &mut Counts) {
+        let local = |ray: &Ray| Ok(self.trace_one(ray, &Nothing, counts));
+        let _ = in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local); // there is no hit
     }
 }
 

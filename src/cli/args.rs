@@ -45,6 +45,12 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     secs.ok_or_else(|| "it is not a positive number of seconds".to_owned())
 }
 
+/// A number from 0 to 1.
+pub fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share: &f64| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "it is not a number from 0 to 1".to_owned())
+}
+
 /// Columns and rows of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {

@@ -8,12 +8,13 @@ use super::args::{LookArgs, ModelArgs, Size, seconds};
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
+use super::quality::QualityArgs;
 use super::structures::{BuildArgs, Many};
 use super::table::{Table, facts};
-use super::{bar, rays, stats};
+use super::{bar, quality, rays, stats};
 use crate::accel::Accel;
 use crate::lab::format::{MISSING, count, number, ratio};
-use crate::lab::{Contestant, Fairness, MeasureOptions, RayKind, Report, Timing, is_tie, measure};
+use crate::lab::{Contestant, Fairness, MeasureOptions, Quality, RayKind, Report, StructureRow, Timing, is_tie, measure};
 use crate::scene::CameraSpec;
 use crate::task::{Cancel, Progress};
 
@@ -24,7 +25,7 @@ pub struct Args {
     /// The structures: ids between commas, or all.
     #[arg(long, value_name = "all|ID,ID", default_value = "all")]
     structures: Many,
-    /// The kinds of rays, between commas: primary, shadow, diffuse.
+    /// The kinds of rays, between commas: primary, shadow, diffuse, lines (random ones).
     #[arg(long, value_name = "KINDS", value_delimiter = ',', default_value = "primary,shadow,diffuse")]
     rays: Vec<RayKind>,
     /// The picture whose rays are traced.
@@ -49,6 +50,11 @@ pub struct Args {
     look: LookArgs,
     #[command(flatten)]
     build: BuildArgs,
+    /// Also work out end-point overlap, and count random lines that nothing cuts short, as stats does.
+    #[arg(long)]
+    quality: bool,
+    #[command(flatten)]
+    how: QualityArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -71,7 +77,8 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 
     let (mut structures, mut contestants) = (Vec::new(), Vec::new());
     for (entry, params) in entries.iter().zip(&params) {
-        let (row, built) = stats::row(entry, &args.build, params, &model, &cx)?;
+        let options = args.how.options(args.quality);
+        let (row, built) = stats::row(entry, &args.build, (params, &options), &model, &cx)?;
         contestants.extend(built.map(|built| Contestant { id: row.id.clone(), accel: built.accel }));
         structures.push(row);
     }
@@ -101,8 +108,9 @@ impl Args {
 fn time(args: &Args, model: &Model, contestants: &[Contestant], report: &mut Report, cx: &Context) -> Result<(), Failure> {
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
     let finder = finder(args, model, contestants, cx)?;
+    let mut sets = Vec::new();
     for kind in &args.kinds() {
-        let (set, _memory) = rays::generate(*kind, model, camera, Arc::clone(&finder), args.size, cx)?;
+        let (set, memory) = rays::generate(*kind, model, camera, Arc::clone(&finder), args.size, cx)?;
         let progress = Progress::new();
         let title = format!("{} rays", kind.id());
         let timings =
@@ -112,8 +120,11 @@ fn time(args: &Args, model: &Model, contestants: &[Contestant], report: &mut Rep
                 row.rays.insert(*kind, timing);
             }
         }
+        if args.how.fit_costs {
+            sets.push((set, memory));
+        }
     }
-    Ok(())
+    if args.how.fit_costs { quality::fit(contestants, &sets, &mut report.structures, cx) } else { Ok(()) }
 }
 
 /// What finds the primary hits: the `bvh`, or where that does not fit, any structure that does.
@@ -131,24 +142,28 @@ fn finder(args: &Args, model: &Model, contestants: &[Contestant], cx: &Context) 
 
 fn text(args: &Args, report: &Report) -> String {
     let terms = format!("{}; {} test", args.options().fairness.label(), args.build.test.id());
-    let mut out = format!("{}\n{}", facts(&[stats::head(report), vec![("terms", terms)]].concat()), stats::structures(report));
+    let head = facts(&[stats::head(report), vec![("terms", terms)]].concat());
+    let mut out = format!("{head}\n{}\n{}", stats::structures(report), quality::text(report));
     for kind in &args.kinds() {
-        let rows: Vec<&Timing> = report.structures.iter().filter_map(|row| row.rays.get(kind)).collect();
-        let Some(of) = rows.first().map(|row| row.of) else { continue };
+        let timing = |row: &StructureRow| Some((row.rays.get(kind)?.clone(), row.quality.clone()?));
+        let rows: Vec<(Timing, Quality)> = report.structures.iter().filter_map(timing).collect();
+        let Some(of) = rows.first().map(|(timing, _)| timing.of) else { continue };
         out += &format!("\n{} rays: {} at {}\n", kind.id(), count(of as u64), args.size);
         out += &timings(&rows);
     }
-    out + "\nms is the median over rounds of one pass over the rays, ± half the interquartile range.\n"
+    out + "\nms is the median over rounds of one pass over the rays, ± half the interquartile range.\n\
+           LCV is the standard deviation of the leaves that a ray enters. expected: of a random line that nothing cuts short.\n"
 }
 
 /// One line for each structure, and why some traced fewer rays.
-fn timings(rows: &[&Timing]) -> String {
-    let fastest = rows.iter().max_by(|a, b| a.mrays_per_sec.total_cmp(&b.mrays_per_sec));
-    let mut table = Table::new(&["structure", "ms", "±", "rounds", "Mrays/s", "time", "hits", "nodes/ray", "tests/ray"]);
+fn timings(rows: &[(Timing, Quality)]) -> String {
+    let fastest = rows.iter().map(|(timing, _)| timing).max_by(|a, b| a.mrays_per_sec.total_cmp(&b.mrays_per_sec));
+    let (of_time, of_counts) = (["structure", "ms", "±", "rounds", "Mrays/s", "time", "hits"], ["nodes/ray", "expected"]);
+    let mut table = Table::new(&[&of_time[..], &of_counts, &["tests/ray", "expected", "LCV"]].concat());
     let mut notes = String::new();
-    for row in rows {
+    for (row, quality) in rows {
         let time = match fastest {
-            Some(best) if std::ptr::eq(*best, *row) => "fastest".to_owned(),
+            Some(best) if std::ptr::eq(best, row) => "fastest".to_owned(),
             Some(best) if is_tie(best, row) => "tie".to_owned(),
             Some(best) => ratio(best.mrays_per_sec / row.mrays_per_sec),
             None => MISSING.to_owned(),
@@ -162,7 +177,10 @@ fn timings(rows: &[&Timing]) -> String {
             time,
             count(row.hits),
             number(row.nodes_per_ray),
+            number(quality.expected_nodes),
             number(row.prims_per_ray),
+            number(quality.expected_tests),
+            number(row.lcv),
         ]);
         if let Some(why) = &row.capped {
             notes += &format!("{}: {why}\n", row.id);

@@ -35,14 +35,8 @@ impl Context {
 
     /// Opens and flattens a model; its warnings go to standard error.
     pub fn load(&self, model: &str) -> Result<Model, Failure> {
-        let progress = Progress::new();
-        let cx = LoadCx {
-            cancel: self.cancel.clone(),
-            progress: progress.clone(),
-            budget: self.budget.clone(),
-            pool: self.pool.clone(),
-        };
-        let opened = bar::watch("open", &progress, || {
+        let cx = self.load_cx();
+        let opened = bar::watch("open", &cx.progress, || {
             let scene = scene::open(model, &cx)?;
             let geometry = Geometry::new(&scene, &cx).map_err(|reason| reason.of(model))?;
             Ok::<_, Failure>(Model { scene: Arc::new(scene), geometry: Arc::new(geometry) })
@@ -51,6 +45,11 @@ impl Context {
             super::output::warn(&format!("{model}: {warning}"));
         }
         Ok(opened)
+    }
+
+    /// What loading and making scenes takes.
+    pub fn load_cx(&self) -> LoadCx {
+        LoadCx { cancel: self.cancel.clone(), progress: Progress::new(), budget: self.budget.clone(), pool: self.pool.clone() }
     }
 
     /// Builds a structure.

@@ -11,8 +11,10 @@ mod failure;
 mod hits;
 mod npy;
 mod output;
+mod quality;
 mod rays;
 mod render;
+mod scaling;
 mod scenes;
 mod stats;
 mod structures;
@@ -48,6 +50,8 @@ enum Command {
     Stats(stats::Args),
     /// Build structures and time them on the same rays, in turns.
     Compare(compare::Args),
+    /// Time builds and rays over a model in growing numbers of triangles.
+    Scaling(scaling::Args),
     /// Render a picture to a PNG file.
     Render(render::Args),
     /// Write the rays of a view to a NumPy file.
@@ -76,6 +80,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Scenes(args) => scenes::run(&args),
         Command::Stats(args) => stats::run(&args, cancel),
         Command::Compare(args) => compare::run(&args, cancel),
+        Command::Scaling(args) => scaling::run(&args, cancel),
         Command::Render(args) => render::run(&args, cancel),
         Command::Rays(args) => rays::run(&args, cancel),
         Command::Trace(args) => trace::run(&args, cancel),

@@ -24,8 +24,8 @@ pub const FINDER: &str = "bvh";
 pub struct Args {
     #[command(flatten)]
     model: ModelArgs,
-    /// primary (through pixel centres), shadow (from the primary hits to a light) or diffuse (from the
-    /// primary hits in random directions).
+    /// primary (through pixel centres), shadow (from the primary hits to a light), diffuse (from the
+    /// primary hits in random directions) or lines (random ones through the scene, as many as pixels).
     #[arg(long)]
     kind: RayKind,
     /// The file to write: float32 (N, 8), origin, direction, tmin, tmax.

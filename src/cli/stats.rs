@@ -1,19 +1,24 @@
 //! `boxwood stats`: what structures look like in figures.
 
+use std::sync::Arc;
+
 use super::args::ModelArgs;
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
+use super::quality::QualityArgs;
 use super::structures::{BuildArgs, Many};
 use super::table::{Table, facts};
+use super::{bar, quality, rays};
 use crate::accel::BuildError;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::Entry;
 use crate::accel::stats::{SahWeights, Stats};
 use crate::geometry::num::floor_index;
 use crate::lab::format::{MISSING, bytes, count, duration, number};
-use crate::lab::{BuiltFacts, BuiltRow, Report, StructureRow};
-use crate::task::Cancel;
+use crate::lab::{BuiltFacts, BuiltRow, Contestant, Quality, QualityOptions, RayKind, Report, StructureRow};
+use crate::scene::CameraSpec;
+use crate::task::{Cancel, Progress};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -24,6 +29,8 @@ pub struct Args {
     structure: Many,
     #[command(flatten)]
     build: BuildArgs,
+    #[command(flatten)]
+    quality: QualityArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -34,9 +41,23 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let params = args.build.params(entries)?;
     let cx = Context::new(args.model.machine, cancel);
     let model = cx.load(&args.model.model)?;
-    let mut structures = Vec::new();
+    let options = args.quality.options(true);
+    let (mut structures, mut contestants) = (Vec::new(), Vec::new());
     for (entry, params) in entries.iter().zip(&params) {
-        structures.push(row(entry, &args.build, params, &model, &cx)?.0);
+        let (row, built) = row(entry, &args.build, (params, &options), &model, &cx)?;
+        if args.quality.fit_costs {
+            contestants.extend(built.map(|built| Contestant { id: row.id.clone(), accel: built.accel }));
+        }
+        structures.push(row);
+    }
+    if args.quality.fit_costs && !contestants.is_empty() {
+        let camera = CameraSpec::or_first(None, &model.scene, &model.geometry, quality::SIZE.aspect());
+        let finder = rays::finder(&model, &cx)?;
+        let mut sets = Vec::new();
+        for kind in RayKind::ALL {
+            sets.push(rays::generate(kind, &model, camera, Arc::clone(&finder), quality::SIZE, &cx)?);
+        }
+        quality::fit(&contestants, &sets, &mut structures, &cx)?;
     }
     let report = Report { scene: model.facts(), machine: cx.machine(), structures };
     print_report(&report, || if args.json { print_json(&report) } else { print(&text(&report)) })
@@ -56,14 +77,19 @@ pub fn print_report(report: &Report, print: impl FnOnce() -> Result<(), Failure>
 pub fn row(
     entry: &Entry,
     build: &BuildArgs,
-    params: &ParamValues,
+    (params, options): (&ParamValues, &QualityOptions),
     model: &Model,
     cx: &Context,
 ) -> Result<(StructureRow, Option<BuiltRow>), Failure> {
     let mut row = StructureRow::new(entry.id, params, build.test);
     match cx.build(entry, model, build.test, params) {
         Ok(built) => {
-            let stats = Stats::of(built.accel.as_ref(), SahWeights::of(params), &cx.cancel)?;
+            let (accel, weights) = (built.accel.as_ref(), SahWeights::of(params));
+            let stats = Stats::of(accel, weights, &cx.cancel)?;
+            let title = format!("quality of {}", entry.id);
+            let with = (&cx.pool, &cx.budget, &cx.cancel);
+            let quality = || Quality::of(accel, &stats, weights, options, with);
+            row.quality = Some(bar::watch(&title, &Progress::new(), quality)?);
             row.built = Some(BuiltFacts::of(&built, stats));
             Ok((row, Some(built)))
         }
@@ -80,7 +106,8 @@ fn text(report: &Report) -> String {
         [StructureRow { built: Some(built), .. }] => histograms(built),
         _ => String::new(),
     };
-    format!("{}\n{}{details}", facts(&head(report)), structures(report))
+    let (table, quality) = (structures(report), quality::text(report));
+    format!("{}\n{table}\n{quality}{details}", facts(&head(report)))
 }
 
 /// The model and the machine.

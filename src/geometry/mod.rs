@@ -5,6 +5,7 @@ mod aabb;
 mod degenerate;
 pub mod num;
 mod overlap;
+pub mod polygon;
 mod ray;
 mod slabs;
 pub mod space;

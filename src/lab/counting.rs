@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::measure::Contestant;
 use super::rays::RaySet;
 use super::sample::pick;
+use super::statistics::Moments;
 use crate::accel::probe::Counts;
 use crate::task::{Cancel, Cancelled, Pool};
 
@@ -19,25 +20,46 @@ pub fn how_many(secs_per_ray: f64) -> usize {
     super::estimate::rays_within(SECS, 2, secs_per_ray).min(MOST)
 }
 
-/// Counts over `n` evenly spread rays; returns the sums and how many rays there were.
-pub fn count(
-    contestant: &Contestant,
-    set: &RaySet,
-    n: usize,
-    pool: &Pool,
-    cancel: &Cancel,
-) -> Result<(Counts, usize), Cancelled> {
+/// What rays did, summed up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counted {
+    /// Nodes and cells entered by a ray.
+    pub nodes: Moments,
+    /// Leaves entered by a ray.
+    pub leaves: Moments,
+    /// Primitives tested by a ray.
+    pub prims: Moments,
+}
+
+impl Counted {
+    /// Adds a ray.
+    pub fn add(&mut self, ray: Counts) {
+        self.nodes.add(ray.nodes);
+        self.leaves.add(ray.leaves);
+        self.prims.add(ray.prims);
+    }
+
+    /// Adds other rays.
+    pub fn join(&mut self, other: &Self) {
+        self.nodes.join(&other.nodes);
+        self.leaves.join(&other.leaves);
+        self.prims.join(&other.prims);
+    }
+}
+
+/// Counts over `n` evenly spread rays.
+pub fn count(contestant: &Contestant, set: &RaySet, n: usize, pool: &Pool, cancel: &Cancel) -> Result<Counted, Cancelled> {
     let rays = pick(&set.rays, n);
-    let watch = |ray| {
+    let watch = |mut sum: Counted, ray| {
         cancel.check()?;
         let mut counts = Counts::default();
         contestant.accel.trace_watched(ray, set.mode, &mut counts);
-        Ok(counts)
+        sum.add(counts);
+        Ok(sum)
     };
-    let sum = |mut a: Counts, b| {
-        a += b;
+    let join = |mut a: Counted, b: Counted| {
+        a.join(&b);
         Ok(a)
     };
-    let counts = pool.run(|| rays.par_iter().map(watch).try_reduce(Counts::default, sum))?;
-    Ok((counts, rays.len()))
+    pool.run(|| rays.par_iter().try_fold(Counted::default, watch).try_reduce(Counted::default, join))
 }

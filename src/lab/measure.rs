@@ -166,14 +166,15 @@ impl<'a> Lane<'a> {
     }
 
     fn counted(&self, set: &RaySet, pool: &Pool, cancel: &Cancel, progress: &Progress) -> Result<Timing, Cancelled> {
-        let (counts, counted) = counting::count(self.contestant, set, counting::how_many(self.secs_per_ray), pool, cancel)?;
+        let counted = counting::count(self.contestant, set, counting::how_many(self.secs_per_ray), pool, cancel)?;
         progress.advance(1);
         let row = Timing::of_rounds(&self.contestant.id, self.rays.len(), self.of, self.hits, &self.secs);
-        let mean = |sum: u64| sum as f64 / counted as f64;
         Ok(Timing {
-            nodes_per_ray: mean(counts.nodes),
-            prims_per_ray: mean(counts.prims),
-            counted,
+            nodes_per_ray: counted.nodes.mean(),
+            leaves_per_ray: counted.leaves.mean(),
+            prims_per_ray: counted.prims.mean(),
+            lcv: counted.leaves.deviation(),
+            counted: counted.nodes.n as usize,
             capped: self.why_capped(),
             ..row
         })

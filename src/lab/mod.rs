@@ -2,22 +2,32 @@
 //! fair, what is counted, and the rows that tables, JSON and reports are made of.
 
 mod building;
+mod costs;
 mod counting;
 mod estimate;
 mod facts;
 pub mod format;
+pub mod least_squares;
+mod lines;
 mod measure;
+mod quality;
 mod rays;
 mod report;
 mod sah_curve;
 mod sample;
+pub mod scaling;
 pub mod statistics;
 mod timing;
+mod uncut;
 
 pub use building::{BuiltRow, build_timed};
+pub use costs::{Costs, FitOptions, fit_costs};
 pub use facts::{MachineFacts, SceneFacts};
+pub use lines::line;
 pub use measure::{Contestant, Fairness, MeasureOptions, measure};
+pub use quality::{Quality, QualityOptions};
 pub use rays::{RayKind, RaySet};
-pub use report::{BuiltFacts, Report, StructureRow};
+pub use report::{BuiltFacts, CostRow, Report, StructureRow};
 pub use sah_curve::{Chosen, SahCurves, of_node as sah_curves};
 pub use timing::{Timing, is_tie};
+pub use uncut::{Enough, UncutLines};

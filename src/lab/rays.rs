@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::lines::line;
 use crate::accel::{Hit, Mode};
 use crate::geometry::Ray;
 use crate::render::Job;
@@ -21,11 +22,13 @@ pub enum RayKind {
     Shadow,
     /// From each primary hit in a random direction about the normal: the least coherent.
     Diffuse,
+    /// Random lines through the whole scene, from outside: what the surface area heuristic is about.
+    Lines,
 }
 
 impl RayKind {
     /// All of them, in the order of tables.
-    pub const ALL: [Self; 3] = [Self::Primary, Self::Shadow, Self::Diffuse];
+    pub const ALL: [Self; 4] = [Self::Primary, Self::Shadow, Self::Diffuse, Self::Lines];
 
     /// The name used on the command line and in files.
     pub const fn id(self) -> &'static str {
@@ -33,6 +36,7 @@ impl RayKind {
             Self::Primary => "primary",
             Self::Shadow => "shadow",
             Self::Diffuse => "diffuse",
+            Self::Lines => "lines",
         }
     }
 
@@ -42,13 +46,14 @@ impl RayKind {
             Self::Primary => "From the camera through the centre of each pixel to the closest hit.",
             Self::Shadow => "From each primary hit to a point light beside the camera: any hit will do.",
             Self::Diffuse => "From each primary hit in a random direction about the normal, to the closest hit.",
+            Self::Lines => "Random lines through the scene's box, each as likely as any other, to the closest hit.",
         }
     }
 
     /// What is asked of them.
     pub const fn mode(self) -> Mode {
         match self {
-            Self::Primary | Self::Diffuse => Mode::Closest,
+            Self::Primary | Self::Diffuse | Self::Lines => Mode::Closest,
             Self::Shadow => Mode::Any,
         }
     }
@@ -59,7 +64,7 @@ impl std::str::FromStr for RayKind {
 
     fn from_str(s: &str) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|kind| kind.id() == s);
-        found.ok_or_else(|| format!("there is no ray kind '{s}': use primary, shadow or diffuse"))
+        found.ok_or_else(|| format!("there is no ray kind '{s}': use primary, shadow, diffuse or lines"))
     }
 }
 
@@ -70,7 +75,7 @@ pub struct RaySet {
     pub kind: RayKind,
     /// What is asked of them.
     pub mode: Mode,
-    /// One for each pixel, or for each pixel that hits something.
+    /// One for each pixel, or for each pixel that hits something; of lines as many as pixels.
     pub rays: Vec<Ray>,
 }
 
@@ -88,6 +93,9 @@ impl RaySet {
     /// # Errors
     /// [`Cancelled`] if asked to stop.
     pub fn generate(kind: RayKind, job: &Job, width: u32, height: u32, pool: &Pool, cancel: &Cancel) -> Result<Self, Cancelled> {
+        if kind == RayKind::Lines {
+            return Self::lines(job.accel.geometry(), u64::from(width) * u64::from(height), pool, cancel);
+        }
         let light = light(&job.camera);
         let band = |first: u32| {
             cancel.check()?;
@@ -109,12 +117,29 @@ impl RaySet {
         let bands: Result<Vec<Vec<Ray>>, Cancelled> = pool.run(|| bands.into_par_iter().map(band).collect());
         Ok(Self { kind, mode: kind.mode(), rays: bands?.concat() })
     }
+
+    /// The first `n` random lines through the box of what structures hold; none where there is nothing.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if asked to stop.
+    pub fn lines(geometry: &Geometry, n: u64, pool: &Pool, cancel: &Cancel) -> Result<Self, Cancelled> {
+        const BAND: u64 = 4096;
+        let bounds = *geometry.world_bounds();
+        let n = if bounds.is_empty() { 0 } else { n };
+        let band = |first: u64| {
+            cancel.check()?;
+            Ok((first..n.min(first + BAND)).map(|i| line(&bounds, i)).collect())
+        };
+        let bands: Vec<u64> = (0..n.div_ceil(BAND)).map(|band| band * BAND).collect();
+        let bands: Result<Vec<Vec<Ray>>, Cancelled> = pool.run(|| bands.into_par_iter().map(band).collect());
+        Ok(Self { kind: RayKind::Lines, mode: RayKind::Lines.mode(), rays: bands?.concat() })
+    }
 }
 
 /// The ray that leaves a primary hit.
 fn second(kind: RayKind, point: &Point, geometry: &Geometry, light: Vec3, sampler: &Sampler) -> Ray {
     match kind {
-        RayKind::Primary | RayKind::Shadow => point.segment_to(geometry, light),
+        RayKind::Primary | RayKind::Shadow | RayKind::Lines => point.segment_to(geometry, light),
         RayKind::Diffuse => point.ray(geometry, cosine_direction(point.normal, sampler.pair(BOUNCE))),
     }
 }

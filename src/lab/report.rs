@@ -4,7 +4,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use super::building::BuiltRow;
+use super::costs::Costs;
 use super::facts::{MachineFacts, SceneFacts};
+use super::quality::Quality;
 use super::rays::RayKind;
 use super::timing::Timing;
 use crate::accel::MemoryPart;
@@ -39,8 +41,32 @@ pub struct StructureRow {
     /// Why it is not, in words for the user.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
+    /// How good it is, without a clock; `null` if it is not built.
+    pub quality: Option<Quality>,
+    /// What steps and tests cost on this machine, if that was asked for and could be told.
+    pub costs: Option<CostRow>,
     /// How it traced each kind of ray; empty where none was asked for.
     pub rays: BTreeMap<RayKind, Timing>,
+}
+
+/// Fitted costs, and what follows from them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CostRow {
+    /// The costs.
+    #[serde(flatten)]
+    pub costs: Costs,
+    /// C_isect where C_trav is 1: what to set the two parameters to.
+    pub ratio: Option<f64>,
+    /// Nanoseconds of a random line that nothing cuts short, from the areas of the cells.
+    pub expected_ns: f64,
+}
+
+impl CostRow {
+    /// Of costs and the expected visits of the structure they belong to.
+    pub fn of(costs: Costs, quality: &Quality) -> Self {
+        let expected_ns = costs.c_trav_ns * quality.expected_nodes + costs.c_isect_ns * quality.expected_tests + costs.c0_ns;
+        Self { ratio: costs.ratio(), expected_ns, costs }
+    }
 }
 
 /// A built structure in figures.
@@ -96,6 +122,6 @@ impl StructureRow {
     /// A row that knows only what shall be built.
     pub fn new(id: &str, params: &ParamValues, test: TestKind) -> Self {
         let params = params.iter().map(|(param, value)| (param.id, value)).collect();
-        Self { id: id.to_owned(), params, test, built: None, error: None, rays: BTreeMap::new() }
+        Self { id: id.to_owned(), params, test, built: None, error: None, quality: None, costs: None, rays: BTreeMap::new() }
     }
 }

@@ -29,8 +29,13 @@ pub struct Timing {
     pub mrays_per_sec: f64,
     /// Nodes and cells entered by a ray in the mean, counted in an untimed pass.
     pub nodes_per_ray: f64,
+    /// Leaves entered by a ray in the mean.
+    pub leaves_per_ray: f64,
     /// Primitives tested by a ray in the mean.
     pub prims_per_ray: f64,
+    /// Leaf count variability: the standard deviation of the number of leaves that a ray enters (Aila,
+    /// Karras and Laine 2013, §4). What it adds to the mean, rays traced together wait for.
+    pub lcv: f64,
     /// Rays that were counted, spread evenly over the set.
     pub counted: usize,
     /// Why not all rays were traced, in words for the user.

@@ -11,6 +11,7 @@ pub mod load;
 mod material;
 mod mesh;
 mod source;
+mod subdivide;
 
 pub use camera::{Camera, Frame, Projection};
 pub use camera_spec::CameraSpec;
@@ -19,6 +20,7 @@ pub use geometry::{Geometry, PrimRef};
 pub use material::Material;
 pub use mesh::{Instance, Mesh};
 pub use source::{LoadCx, open};
+pub use subdivide::subdivide;
 
 use glam::Vec3;
 

@@ -7,6 +7,7 @@ use crate::accel::params::ParamValues;
 use crate::accel::registry::Entry;
 use crate::accel::stats::Stats;
 use crate::geometry::tri::TestKind;
+use crate::lab::Quality;
 use crate::task::Phase;
 
 /// What a structure was built from, besides the scene.
@@ -39,6 +40,8 @@ pub struct Built {
     pub phases: Vec<Phase>,
     /// Figures, once they are worked out.
     pub stats: Option<Arc<Stats>>,
+    /// What is predicted of rays, with the figures.
+    pub quality: Option<Arc<Quality>>,
 }
 
 impl std::fmt::Debug for Built {
@@ -67,8 +70,10 @@ impl Kept {
     }
 
     /// Adds the figures of a structure.
-    pub fn add_stats(&mut self, key: &Key, stats: &Arc<Stats>) {
-        self.0.iter_mut().filter(|b| b.key == *key).for_each(|b| b.stats = Some(Arc::clone(stats)));
+    pub fn add_stats(&mut self, key: &Key, stats: &Arc<Stats>, quality: &Arc<Quality>) {
+        for built in self.0.iter_mut().filter(|b| b.key == *key) {
+            (built.stats, built.quality) = (Some(Arc::clone(stats)), Some(Arc::clone(quality)));
+        }
     }
 
     /// Drops the least recently used but for `shown`; false if there is none.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::kept::{Built, Key};
 use super::workers::Measured;
 use crate::accel::registry::{self, Entry};
-use crate::lab::{Timing, is_tie};
+use crate::lab::{Costs, Timing, is_tie};
 use crate::scene::Camera;
 
 /// The table.
@@ -27,6 +27,8 @@ pub struct Row {
     pub bytes: Option<u64>,
     /// Its timing on the measured view.
     pub timing: Option<Timing>,
+    /// What steps and tests cost in it, fitted to measured rays.
+    pub costs: Option<Costs>,
     /// Why there is none.
     pub failed: Option<String>,
 }
@@ -46,9 +48,10 @@ impl Timings {
 
     /// Takes in a measurement.
     pub fn measured(&mut self, measured: &Measured) {
-        for (built, timing) in measured.built.iter().zip(&measured.timings) {
+        for ((built, timing), costs) in measured.built.iter().zip(&measured.timings).zip(&measured.costs) {
             self.built(built);
-            self.rows.entry(built.key.entry.id).or_default().timing = Some(timing.clone());
+            let row = self.rows.entry(built.key.entry.id).or_default();
+            (row.timing, row.costs) = (Some(timing.clone()), costs.clone());
         }
         for (id, why) in &measured.failed {
             self.rows.insert(id, Row { failed: Some(why.clone()), ..Row::default() });
@@ -59,6 +62,11 @@ impl Timings {
     /// Every registered structure with what is known of it.
     pub fn rows(&self) -> impl Iterator<Item = (&'static Entry, Row)> + '_ {
         registry::ALL.iter().map(|entry| (entry, self.rows.get(entry.id).cloned().unwrap_or_default()))
+    }
+
+    /// The costs measured of just that structure.
+    pub fn costs(&self, key: &Key) -> Option<&Costs> {
+        self.rows.get(key.entry.id).filter(|row| row.key.as_ref() == Some(key))?.costs.as_ref()
     }
 
     /// The fastest structure that was measured.

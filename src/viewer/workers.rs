@@ -11,7 +11,10 @@ use crate::accel::stats::{SahWeights, Stats};
 use crate::accel::{Accel, BuildCx, BuildError, Cell};
 use crate::geometry::Ray;
 use crate::job::Job;
-use crate::lab::{Contestant, MeasureOptions, RayKind, RaySet, SahCurves, Timing, measure, sah_curves};
+use crate::lab::{
+    Contestant, Costs, Enough, FitOptions, MeasureOptions, Quality, QualityOptions, RayKind, RaySet, SahCurves, Timing,
+    fit_costs, measure, sah_curves,
+};
 use crate::render;
 use crate::scene::{Camera, Geometry, LoadError, Scene};
 use crate::task::{Budget, Cancelled, Pool};
@@ -66,17 +69,29 @@ fn build_now(key: Key, geometry: &Arc<Geometry>, cx: &BuildCx) -> Result<Built, 
     let start = std::time::Instant::now();
     let accel: Arc<dyn Accel> = Arc::from(key.entry.build(geometry, key.test, &key.params, cx)?);
     let build_secs = start.elapsed().as_secs_f64();
-    Ok(Built { key, accel, build_secs, phases: cx.progress.finish(), stats: None })
+    Ok(Built { key, accel, build_secs, phases: cx.progress.finish(), stats: None, quality: None })
 }
 
 /// Figures on their way, and of what.
-pub type Counting = (Key, Job<Result<Stats, Cancelled>>);
+pub type Counting = (Key, Job<Result<(Stats, Quality), Cancelled>>);
+
+/// What is found out of a structure while its user waits for the figures: less exactly than on the
+/// command line, in a fraction of a second.
+const SOON: QualityOptions = QualityOptions {
+    alpha: crate::accel::epo::ALPHA,
+    epo_most: Some(20_000),
+    lines: Some(Enough { three_sigma: 0.02, secs: 0.2, lines: 1 << 17 }),
+};
 
 /// Starts working out the figures of a structure.
 pub fn count(shared: &Shared, built: &Built) -> std::io::Result<Counting> {
-    let accel = Arc::clone(&built.accel);
-    let job =
-        Job::spawn("statistics", shared.waker(), move |cancel, _| Stats::of(accel.as_ref(), SahWeights::default(), cancel))?;
+    let (accel, weights) = (Arc::clone(&built.accel), SahWeights::of(&built.key.params));
+    let Shared { pool, budget, .. } = shared.clone();
+    let job = Job::spawn("statistics", shared.waker(), move |cancel, _| {
+        let stats = Stats::of(accel.as_ref(), weights, cancel)?;
+        let quality = Quality::of(accel.as_ref(), &stats, weights, &SOON, (&pool, &budget, cancel))?;
+        Ok((stats, quality))
+    })?;
     Ok((built.key.clone(), job))
 }
 
@@ -112,6 +127,8 @@ pub struct Measured {
     pub built: Vec<Built>,
     /// Their timings, in the same order.
     pub timings: Vec<Timing>,
+    /// What steps and tests cost in each, as far as that could be told.
+    pub costs: Vec<Option<Costs>>,
     /// Structures that could not be built, and why.
     pub failed: Vec<(&'static str, String)>,
     /// The view, and its size in pixels.
@@ -156,6 +173,10 @@ pub fn measure_all(shared: &Shared, plan: Plan) -> std::io::Result<Measuring> {
         let contestant = |b: &Built| Contestant { id: b.key.entry.id.to_owned(), accel: Arc::clone(&b.accel) };
         let contestants: Vec<Contestant> = measured.built.iter().map(contestant).collect();
         measured.timings = measure(&contestants, &rays, &MeasureOptions::default(), &pool, cancel, progress)?;
+        // Lines beside the view's rays: the more the rays differ, the better the costs are told apart.
+        let lines = RaySet::lines(plan.view.accel.geometry(), 1 << 16, &pool, cancel)?;
+        let options = FitOptions { cap_secs: 2.0, ..FitOptions::default() };
+        measured.costs = fit_costs(&contestants, &[&rays, &lines], &options, &pool, cancel, progress)?;
         Ok(measured)
     })
 }

@@ -22,13 +22,16 @@ fn a_bad_model_is_named_with_the_reason() {
 
 #[test]
 fn bad_arguments_are_explained() {
-    let cases: [(&[&str], &str); 11] = [
+    let cases: [(&[&str], &str); 14] = [
         (&["stats", "builtin:lecture", "--structure", "oak"], "brute, bound, bvh, kdtree, grid"),
         (&["stats", "builtin:lecture"], "--structure"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "bins=1"], "a whole number from 2"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "leaves=1"], "there is bins"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--test", "slow"], "watertight or fast"),
-        (&["compare", "builtin:lecture", "--rays", "gamma"], "primary, shadow or diffuse"),
+        (&["compare", "builtin:lecture", "--rays", "gamma"], "primary, shadow, diffuse or lines"),
+        (&["stats", "builtin:lecture", "--structure", "bvh", "--alpha", "1.5"], "from 0 to 1"),
+        (&["scaling", "builtin:soup", "--from", "1000", "--to", "500"], "two sizes"),
+        (&["scaling", "builtin:lecture", "--to", "20"], "two sizes"),
         (&["compare", "builtin:lecture", "--best", "--like-for-like"], "cannot be used with"),
         (&["compare", "builtin:lecture", "--cap", "0"], "positive"),
         (&["render", "builtin:lecture", "-o", "x.png", "--size", "0x4"], "WIDTHxHEIGHT"),

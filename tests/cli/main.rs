@@ -2,5 +2,6 @@
 
 mod failures;
 mod files;
+mod quality;
 mod reports;
 mod support;

@@ -6,6 +6,7 @@ pub mod help;
 pub mod menu;
 pub mod overlay;
 pub mod path;
+pub mod prediction;
 pub mod scene;
 pub mod selection;
 pub mod statistics;

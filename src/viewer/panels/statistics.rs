@@ -2,7 +2,7 @@
 
 use eframe::egui::{CollapsingHeader, RichText, Ui};
 
-use super::{Commands, bars, empty, fact, heading};
+use super::{Commands, bars, empty, fact, heading, prediction};
 use crate::accel::stats::{LEAF_SIZES, Stats};
 use crate::viewer::format;
 use crate::viewer::kept::Built;
@@ -11,7 +11,7 @@ use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
 /// Draws the panel.
-pub fn show(ui: &mut Ui, state: &State, _: &mut Commands) {
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     heading(ui, "Statistics");
     let Some(built) = &state.shown else {
         empty(ui, "No structure yet.");
@@ -29,6 +29,7 @@ pub fn show(ui: &mut Ui, state: &State, _: &mut Commands) {
     let triangles = state.model.as_ref().map_or(0, |m| m.geometry.live_count());
     figures(ui, stats, triangles);
     traversal(ui, state);
+    prediction::show(ui, state, built, commands);
     histograms(ui, built, stats);
     memory(ui, stats, triangles);
 }

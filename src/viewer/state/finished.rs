@@ -96,11 +96,11 @@ impl State {
         let Some((key, job)) = &self.counting else { return self.count() };
         match job.poll() {
             Outcome::Running => return,
-            Outcome::Done(Ok(stats)) => {
-                let stats = Arc::new(stats);
-                self.kept.add_stats(key, &stats);
+            Outcome::Done(Ok((stats, quality))) => {
+                let (stats, quality) = (Arc::new(stats), Arc::new(quality));
+                self.kept.add_stats(key, &stats, &quality);
                 if let Some(shown) = self.shown.as_mut().filter(|b| b.key == *key) {
-                    shown.stats = Some(stats);
+                    (shown.stats, shown.quality) = (Some(stats), Some(quality));
                 }
                 self.clamp_depth();
             }

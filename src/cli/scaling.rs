@@ -1,0 +1,199 @@
+//! `boxwood scaling`: how builds and rays slow down as a model gets more triangles.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::args::{ModelArgs, Size, seconds};
+use super::context::{Context, Model};
+use super::failure::Failure;
+use super::output::{print, print_json};
+use super::structures::{BuildArgs, Many};
+use super::table::{Table, facts};
+use super::{bar, rays};
+use crate::accel::{BuildCx, BuildError};
+use crate::geometry::num::floor_index;
+use crate::geometry::tri::TestKind;
+use crate::lab::format::{MISSING, count, duration, number};
+use crate::lab::scaling::{BuildRounds, Candidate, Exponent, Scaling, scaling};
+use crate::lab::{MachineFacts, MeasureOptions, RayKind};
+use crate::scene::builtin::{self, MAX_TRIANGLES, SCHEME};
+use crate::scene::{CameraSpec, Geometry, subdivide};
+use crate::task::{Cancel, Progress};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A built-in scene named without a size is made in each size; anything else is cut finer, each
+    /// triangle into four.
+    #[command(flatten)]
+    model: ModelArgs,
+    /// The structures: ids between commas, or all.
+    #[arg(long, value_name = "all|ID,ID", default_value = "all")]
+    structures: Many,
+    /// The fewest triangles of a scene that is made in each size.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=MAX_TRIANGLES as u64))]
+    from: u64,
+    /// The most triangles.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=MAX_TRIANGLES as u64))]
+    to: u64,
+    /// Sizes of a scene that is made in each, the ratio from one to the next being the same.
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(2..=64))]
+    steps: u32,
+    /// The rays that are timed: primary, shadow, diffuse or lines. One set for all sizes, made on the largest.
+    #[arg(long, default_value = "lines")]
+    rays: RayKind,
+    /// The picture whose rays are traced.
+    #[arg(long, value_name = "WxH", default_value = "320x200")]
+    size: Size,
+    /// The fewest timed rounds over the rays, and the most builds.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    repeat: u32,
+    /// The least seconds timed of each structure and size; it is not built again after as many seconds of builds.
+    #[arg(long, default_value = "0.5", value_parser = seconds)]
+    secs: f64,
+    /// Seconds that tracing one structure and size may take; a slower one traces a part of the rays.
+    #[arg(long, value_name = "SECS", default_value = "5", value_parser = seconds)]
+    cap: f64,
+    #[command(flatten)]
+    build: BuildArgs,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is printed as JSON.
+#[derive(Serialize)]
+struct Outcome {
+    model: String,
+    machine: MachineFacts,
+    test: TestKind,
+    rays: RayKind,
+    triangles: Vec<u64>,
+    structures: Vec<Scaling>,
+}
+
+pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
+    let Many(entries) = &args.structures;
+    let params = args.build.params(entries)?;
+    let candidates: Vec<Candidate> =
+        entries.iter().copied().zip(params).map(|(entry, params)| Candidate { entry, params }).collect();
+    let cx = Context::new(args.model.machine, cancel);
+    let (geometries, largest) = models(args, &cx)?;
+    let camera = CameraSpec::or_first(None, &largest.scene, &largest.geometry, args.size.aspect());
+    let (set, _memory) = rays::generate(args.rays, &largest, camera, rays::finder(&largest, &cx)?, args.size, &cx)?;
+    let build_cx =
+        BuildCx { cancel: cx.cancel.clone(), progress: Progress::new(), pool: cx.pool.clone(), budget: cx.budget.clone() };
+    let rounds = BuildRounds { rounds: args.repeat as usize, secs: args.secs };
+    let options =
+        MeasureOptions { min_rounds: args.repeat as usize, min_secs: args.secs, cap_secs: args.cap, ..MeasureOptions::default() };
+    let progress = Progress::new();
+    let scale = || {
+        let with = (&build_cx, &progress);
+        scaling(&candidates, &geometries, &set, args.build.test, (&rounds, &options), with)
+    };
+    let structures = bar::watch("scaling", &progress, scale).map_err(|error| match error {
+        BuildError::Cancelled(_) => Failure::Cancelled,
+        error => Failure::Other(error.into()),
+    })?;
+    let outcome = Outcome {
+        model: args.model.model.clone(),
+        machine: cx.machine(),
+        test: args.build.test,
+        rays: args.rays,
+        triangles: geometries.iter().map(|g| g.live_count() as u64).collect(),
+        structures,
+    };
+    if args.json { print_json(&outcome) } else { print(&text(&outcome)) }
+}
+
+/// The model in all sizes, the smallest first, and the largest as a whole.
+fn models(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failure> {
+    let model = &args.model.model;
+    let scales = |name: &str| builtin::all().iter().any(|s| s.id == name && matches!(s.size, builtin::Size::Scales(_)));
+    let (geometries, largest) = match model.strip_prefix(SCHEME) {
+        Some(name) if scales(name) => made(args, cx)?,
+        _ => subdivided(args, cx)?,
+    };
+    if geometries.len() < 2 {
+        let why = "there are not two sizes in that range: give --from and --to farther apart";
+        return Err(Failure::Input(format!("{model}: {why}")));
+    }
+    Ok((geometries, largest))
+}
+
+/// A built-in scene in each size; sizes that its construction makes one are taken once.
+fn made(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failure> {
+    let (from, to) = (args.from.min(args.to) as f64, args.to as f64);
+    let mut geometries: Vec<Arc<Geometry>> = Vec::new();
+    let mut largest = None;
+    for step in 0..args.steps {
+        let share = f64::from(step) / f64::from(args.steps - 1);
+        let triangles = floor_index((from * (to / from).powf(share)).round(), MAX_TRIANGLES);
+        let model = cx.load(&format!("{}?triangles={triangles}", args.model.model))?;
+        if geometries.last().is_none_or(|last| last.live_count() < model.geometry.live_count()) {
+            geometries.push(Arc::clone(&model.geometry));
+            largest = Some(model);
+        }
+    }
+    largest.map(|largest| (geometries, largest)).ok_or_else(|| Failure::Input("there is no size to make".to_owned()))
+}
+
+/// The model as it is, and cut finer and finer.
+fn subdivided(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failure> {
+    let mut model = cx.load(&args.model.model)?;
+    let mut geometries = vec![Arc::clone(&model.geometry)];
+    while model.scene.triangle_count() * 4 <= args.to {
+        let load_cx = cx.load_cx();
+        let finer = || {
+            let scene = subdivide(&model.scene, &load_cx).map_err(|reason| reason.of(&args.model.model))?;
+            let geometry = Geometry::new(&scene, &load_cx).map_err(|reason| reason.of(&args.model.model))?;
+            Ok::<_, Failure>(Model { scene: Arc::new(scene), geometry: Arc::new(geometry) })
+        };
+        model = bar::watch("subdivide", &load_cx.progress, finer)?;
+        geometries.push(Arc::clone(&model.geometry));
+    }
+    Ok((geometries, model))
+}
+
+fn text(outcome: &Outcome) -> String {
+    let machine = &outcome.machine;
+    let sizes: Vec<String> = outcome.triangles.iter().map(|n| count(*n)).collect();
+    let head = facts(&[
+        ("model", format!("{}: {} triangles", outcome.model, sizes.join(", "))),
+        ("machine", format!("{}, {} cores, {} threads", machine.cpu, machine.cores, machine.threads)),
+        ("rays", format!("{}, one set for all sizes", outcome.rays.id())),
+    ]);
+    let mut exponents = Table::new(&["structure", "build exponent", "±", "ray exponent", "±"]);
+    let mut points = Table::new(&["structure", "triangles", "build", "±", "builds", "ns/ray", "±", "rounds"]);
+    let mut notes = String::new();
+    for structure in &outcome.structures {
+        let of = |exponent: Option<Exponent>| exponent.map_or([f64::NAN; 2], |e| [e.value, e.error]);
+        let four = [of(structure.build), of(structure.ray)].concat().into_iter().map(fixed);
+        exponents.row([structure.id.clone()].into_iter().chain(four).collect());
+        for p in &structure.points {
+            points.row(vec![
+                structure.id.clone(),
+                count(p.triangles),
+                duration(p.build_secs),
+                duration(p.build_spread),
+                count(p.builds as u64),
+                number(p.ray_secs * 1e9),
+                number(p.ray_spread * 1e9),
+                count(p.rounds as u64),
+            ]);
+        }
+        if let Some(error) = &structure.error {
+            notes += &format!("{}: {error}\n", structure.id);
+        }
+    }
+    format!(
+        "{head}\n{}\n{}{notes}\nTime grows as triangles to the power of the exponent: least squares over the logarithms, ± the standard error.\n",
+        points.render(),
+        exponents.render()
+    )
+}
+
+/// An exponent with two decimals.
+fn fixed(x: f64) -> String {
+    if x.is_finite() { format!("{x:.2}") } else { MISSING.to_owned() }
+}
