@@ -150,6 +150,11 @@ pub trait Cells: Send + Sync {
 
     /// Bytes by part, the shared geometry not counted.
     fn memory(&self) -> Vec<MemoryPart>;
+
+    /// What the builder decided, in words for the user.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Walks all cells below and including the root, parents first, until `visit` breaks or says not to

@@ -14,6 +14,11 @@ pub trait Probe {
     /// A primitive was tested.
     #[inline(always)]
     fn prim(&mut self) {}
+
+    /// A hit was found outside the cell it was found in: kept, not returned, since something in a
+    /// cell between may be hit before it.
+    #[inline(always)]
+    fn outside(&mut self) {}
 }
 
 /// Nobody watches.
@@ -29,8 +34,10 @@ pub struct Counts {
     pub nodes: u64,
     /// Leaves entered.
     pub leaves: u64,
-    /// Primitives tested.
+    /// Primitives tested; one that a mailbox skips is not.
     pub prims: u64,
+    /// Hits found outside the cell they were found in: kept, not returned.
+    pub outside: u64,
 }
 
 impl Probe for Counts {
@@ -48,6 +55,11 @@ impl Probe for Counts {
     fn prim(&mut self) {
         self.prims += 1;
     }
+
+    #[inline(always)]
+    fn outside(&mut self) {
+        self.outside += 1;
+    }
 }
 
 impl std::ops::AddAssign for Counts {
@@ -55,5 +67,6 @@ impl std::ops::AddAssign for Counts {
         self.nodes += other.nodes;
         self.leaves += other.leaves;
         self.prims += other.prims;
+        self.outside += other.outside;
     }
 }

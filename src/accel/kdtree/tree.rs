@@ -11,6 +11,7 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use super::mailbox::Mailbox;
 use crate::accel::best::Best;
 use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape, Split};
 use crate::accel::probe::Probe;
@@ -93,18 +94,21 @@ pub struct Built {
     pub nodes: Vec<KdNode>,
     /// What the leaves hold.
     pub refs: Vec<PrimRef>,
+    /// What the builder decided, in words.
+    pub remarks: Vec<String>,
     /// The memory of both.
     pub _charge: Charge,
 }
 
-/// A k-d tree traced with the triangle test `T`.
+/// A k-d tree traced with the triangle test `T`; if `MAILBOX`, each ray remembers the last triangles
+/// it was tested against.
 #[derive(Debug)]
-pub struct KdTree<T> {
+pub struct KdTree<T, const MAILBOX: bool> {
     built: Built,
     test: PhantomData<T>,
 }
 
-impl<T: TriTest> KdTree<T> {
+impl<T: TriTest, const MAILBOX: bool> KdTree<T, MAILBOX> {
     /// Takes what the builder made.
     pub const fn new(built: Built) -> Self {
         Self { built, test: PhantomData }
@@ -129,7 +133,7 @@ struct Aside {
     exit: f32,
 }
 
-impl<T: TriTest> Structure for KdTree<T> {
+impl<T: TriTest, const MAILBOX: bool> Structure for KdTree<T, MAILBOX> {
     fn geometry(&self) -> &Arc<Geometry> {
         &self.built.geometry
     }
@@ -152,6 +156,7 @@ impl<T: TriTest> Structure for KdTree<T> {
         let mut stack = [Aside { node: 0, entry: 0.0, exit: 0.0 }; MAX_DEPTH as usize];
         let mut top = 0;
         let mut current = 0u32;
+        let mut mailbox = Mailbox::new();
         loop {
             probe.node();
             let node = self.built.nodes[current as usize];
@@ -174,8 +179,15 @@ impl<T: TriTest> Structure for KdTree<T> {
             }
             probe.leaf();
             for prim in &self.built.refs[node.refs()] {
+                if MAILBOX && mailbox.holds_or_takes(*prim) {
+                    continue;
+                }
+                let known = best.is_of(*prim);
                 if best.test(&test, &self.built.geometry.corners(*prim), *prim, query, probe) {
                     return best.found();
+                }
+                if !known && best.is_of(*prim) && !(entry <= best.t() && best.t() <= exit) {
+                    probe.outside();
                 }
             }
             // The next cell in front of the best hit. Cells come front to back but for those on both
@@ -194,7 +206,7 @@ impl<T: TriTest> Structure for KdTree<T> {
     }
 }
 
-impl<T: TriTest> Cells for KdTree<T> {
+impl<T: TriTest, const MAILBOX: bool> Cells for KdTree<T, MAILBOX> {
     fn root(&self) -> Cell {
         self.cell(0, 0, *self.built.geometry.bounds())
     }
@@ -219,6 +231,10 @@ impl<T: TriTest> Cells for KdTree<T> {
 
     fn layout(&self) -> Layout {
         Layout::Partition
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.built.remarks.clone()
     }
 
     fn memory(&self) -> Vec<MemoryPart> {
