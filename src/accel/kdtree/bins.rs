@@ -93,8 +93,7 @@ pub fn best_plane(costs: &Costs, cell: &Aabb, refs: &[KdRef], bins: u32, cancel:
             let pos = scales[k].begin(bin);
             if on.inside(pos) {
                 // Boxes in a plane are counted above it, as the bin that begins there holds them.
-                let tests = on.tests(pos, below as f64, above as f64);
-                best = best.or(Candidate { pos, planar_below: false, tests });
+                best = best.or(on.candidate(pos, false, below as f64, above as f64));
             }
         }
         best

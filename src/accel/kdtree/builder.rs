@@ -9,7 +9,9 @@
 //! number of threads.
 //!
 //! A cell whose best plane costs more than a leaf is divided a few times more in the hope of a
-//! better one further down (Pharr, Jakob and Humphreys 2016, §4.4.2: bad refines).
+//! better one further down (Pharr, Jakob and Humphreys 2016, §4.4.2: bad refines). Empty space is
+//! cut off at a rebate when planes are compared, but whether a plane is a bad one goes by its full
+//! cost: otherwise cells of a few triangles would be whittled down without end, for nothing.
 
 use std::sync::Arc;
 
@@ -224,7 +226,7 @@ impl Builder<'_> {
         let Some(plane) = found else { return Ok(None) };
         let leaf = self.costs.leaf(refs.len());
         let bad = if plane.cost < leaf { work.bad } else { work.bad + 1 };
-        let hopeless = (plane.cost > 4.0 * leaf && refs.len() < 16) || bad >= BAD_REFINES;
+        let hopeless = (plane.forgiven > 4.0 * leaf && refs.len() < 16) || bad >= BAD_REFINES;
         Ok((!hopeless).then_some((plane, bad)))
     }
 

@@ -22,28 +22,36 @@ pub struct Plane {
     pub pos: f32,
     /// Which side gets the triangles that lie in it.
     pub planar_below: bool,
-    /// The cost of the divided cell.
+    /// The cost of the divided cell, nothing forgiven.
     pub cost: f64,
+    /// The cost by which it was chosen: less, if one side is empty.
+    pub forgiven: f64,
 }
 
-/// The best plane on one axis so far.
+/// A plane across some axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
-    /// Where.
-    pub pos: f32,
-    /// Which side gets the triangles that lie in it.
-    pub planar_below: bool,
-    /// See [`OnAxis::tests`].
-    pub tests: f64,
+    pos: f32,
+    planar_below: bool,
+    /// The expected number of triangles tested, times the cell's area.
+    tests: f64,
+    /// The share of it that counts when planes are compared.
+    counts: f64,
 }
 
 impl Candidate {
-    /// Nothing found yet: worse than any plane.
-    pub const NONE: Self = Self { pos: 0.0, planar_below: true, tests: f64::INFINITY };
+    /// Worse than any plane.
+    pub const NONE: Self = Self { pos: 0.0, planar_below: true, tests: f64::INFINITY, counts: 1.0 };
 
     /// The cheaper one; the first of equals.
+    #[inline(always)]
     pub fn or(self, other: Self) -> Self {
-        if other.tests < self.tests { other } else { self }
+        if other.weight() < self.weight() { other } else { self }
+    }
+
+    #[inline(always)]
+    fn weight(&self) -> f64 {
+        self.tests * self.counts
     }
 }
 
@@ -58,14 +66,16 @@ impl Costs {
         let (k, d) = (axis.index(), cell.size().as_dvec3());
         let (b, c) = (d[(k + 1) % 3], d[(k + 2) % 3]);
         let (min, max) = (cell.min[k], cell.max[k]);
-        OnAxis { min, max, ends: 2.0 * b * c, girth: 2.0 * (b + c), width: d[k], unforgiven: 1.0 - self.empty_bonus }
+        OnAxis { min, max, ends: 2.0 * b * c, girth: 2.0 * (b + c), width: d[k], counts_if_empty: 1.0 - self.empty_bonus }
     }
 
     /// The cheapest of the axes' candidates, the first of equals; `None` if there is none at all.
     pub fn cheapest(&self, cell: &Aabb, found: [Candidate; 3]) -> Option<Plane> {
-        let (best, axis) = found.into_iter().zip(Axis::ALL).reduce(|a, b| if b.0.tests < a.0.tests { b } else { a })?;
-        let cost = self.c_trav + self.c_isect * best.tests / cell.area();
-        cost.is_finite().then_some(Plane { axis, pos: best.pos, planar_below: best.planar_below, cost })
+        let cheaper = |a: (Candidate, Axis), b: (Candidate, Axis)| if b.0.weight() < a.0.weight() { b } else { a };
+        let (best, axis) = found.into_iter().zip(Axis::ALL).reduce(cheaper)?;
+        let cost = |tests: f64| self.c_trav + self.c_isect * tests / cell.area();
+        let (cost, forgiven) = (cost(best.tests), cost(best.weight()));
+        cost.is_finite().then_some(Plane { axis, pos: best.pos, planar_below: best.planar_below, cost, forgiven })
     }
 }
 
@@ -81,8 +91,8 @@ pub struct OnAxis {
     /// The circumference of such a face.
     girth: f64,
     width: f64,
-    /// What is left of the cost when one side is empty.
-    unforgiven: f64,
+    /// The share of the cost that counts when one side is empty.
+    counts_if_empty: f64,
 }
 
 impl OnAxis {
@@ -92,12 +102,13 @@ impl OnAxis {
         (self.min < pos) & (pos < self.max)
     }
 
-    /// The expected number of triangles tested, times the cell's area, with so many on either side.
+    /// A plane with so many triangles on either side, those in it among them.
     #[inline(always)]
-    pub fn tests(&self, pos: f32, below: f64, above: f64) -> f64 {
+    pub fn candidate(&self, pos: f32, planar_below: bool, below: f64, above: f64) -> Candidate {
         let depth = f64::from(pos) - f64::from(self.min);
         let tests = (self.ends + self.girth * depth) * below + (self.ends + self.girth * (self.width - depth)) * above;
-        if below == 0.0 || above == 0.0 { tests * self.unforgiven } else { tests }
+        let counts = if below == 0.0 || above == 0.0 { self.counts_if_empty } else { 1.0 };
+        Candidate { pos, planar_below, tests, counts }
     }
 }
 
@@ -114,8 +125,15 @@ mod tests {
             let on = costs.on_axis(&cell, axis);
             let pos = cell.min[axis.index()] + 0.25;
             let (low, high) = cell.split(axis, pos);
-            assert!((on.tests(pos, 3.0, 5.0) - (3.0 * low.area() + 5.0 * high.area())).abs() < 1e-12);
-            assert!((on.tests(pos, 0.0, 5.0) - 0.8 * 5.0 * high.area()).abs() < 1e-12);
+            let is = |found: Plane, cost: f64| (found.cost - cost).abs() < 1e-12;
+            let plane = |below, above| {
+                let found = on.candidate(pos, true, below, above);
+                costs.cheapest(&cell, [Candidate::NONE, found, Candidate::NONE]).expect("one")
+            };
+            let expected = 1.0 + 1.5 * (3.0 * low.area() + 5.0 * high.area()) / cell.area();
+            assert!(is(plane(3.0, 5.0), expected) && plane(3.0, 5.0).forgiven == plane(3.0, 5.0).cost);
+            let tests = 1.5 * 5.0 * high.area() / cell.area();
+            assert!(is(plane(0.0, 5.0), 1.0 + tests) && (plane(0.0, 5.0).forgiven - 1.0 - 0.8 * tests).abs() < 1e-12);
             assert!(on.inside(pos) && !on.inside(on.min) && !on.inside(on.max));
         }
         assert_eq!(costs.cheapest(&cell, [Candidate::NONE; 3]), None);

@@ -23,7 +23,7 @@ pub fn best_plane(
     let on = Axis::ALL.map(|axis| costs.on_axis(cell, axis));
     let start = Counts { below: 0.0, above: refs as f64 };
     let found = if lists[0].len() < PARALLEL {
-        [0, 1, 2].map(|k| sweep(lists[k], &on[k], start).0)
+        [0, 1, 2].map(|k| sweep(lists[k], &on[k], start))
     } else {
         let axis = |k: usize| in_chunks(lists[k], &on[k], start, cancel);
         let (x, (y, z)) = rayon::join(|| axis(0), || rayon::join(|| axis(1), || axis(2)));
@@ -53,7 +53,7 @@ fn in_chunks(events: &[Event], on: &OnAxis, start: Counts, cancel: &Cancel) -> R
             Some(here)
         })
         .collect();
-    let look = |(chunk, start): (&[Event], &Counts)| cancel.check().map(|()| sweep(chunk, on, *start).0);
+    let look = |(chunk, start): (&[Event], &Counts)| cancel.check().map(|()| sweep(chunk, on, *start));
     let found: Vec<Candidate> = events.par_chunks(CHUNK).zip(&starts).map(look).collect::<Result<_, _>>()?;
     Ok(found.into_iter().fold(Candidate::NONE, Candidate::or))
 }
@@ -63,7 +63,7 @@ fn in_chunks(events: &[Event], on: &OnAxis, start: Counts, cancel: &Cancel) -> R
 /// boxes twice, but never too few, and the last end and the first start count right: so the minimum
 /// is right, and places need not be told apart. Of the boxes in a plane, the last one sees all of
 /// them below, the first one all above; in between the cost is between those two.
-fn sweep(events: &[Event], on: &OnAxis, start: Counts) -> (Candidate, Counts) {
+fn sweep(events: &[Event], on: &OnAxis, start: Counts) -> Candidate {
     let Counts { mut below, mut above } = start;
     let mut best = Candidate::NONE;
     for event in events {
@@ -72,13 +72,13 @@ fn sweep(events: &[Event], on: &OnAxis, start: Counts) -> (Candidate, Counts) {
         above -= if ends { 1.0 } else { 0.0 };
         if on.inside(pos) {
             if begins & ends {
-                best = best.or(Candidate { pos, planar_below: false, tests: on.tests(pos, below, above + 1.0) });
-                best = best.or(Candidate { pos, planar_below: true, tests: on.tests(pos, below + 1.0, above) });
+                best = best.or(on.candidate(pos, false, below, above + 1.0));
+                best = best.or(on.candidate(pos, true, below + 1.0, above));
             } else {
-                best = best.or(Candidate { pos, planar_below: begins, tests: on.tests(pos, below, above) });
+                best = best.or(on.candidate(pos, begins, below, above));
             }
         }
         below += if begins { 1.0 } else { 0.0 };
     }
-    (best, Counts { below, above })
+    best
 }
