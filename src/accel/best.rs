@@ -40,6 +40,12 @@ impl Best {
         (self.hit.prim != NONE).then_some(self.hit)
     }
 
+    /// Whether it is this triangle that was found.
+    #[inline(always)]
+    pub const fn is_of(&self, prim: PrimRef) -> bool {
+        self.hit.prim == prim
+    }
+
     /// Tests a triangle and keeps the hit if it is closer, or as close with a lower index. True if
     /// the search is over, which happens for [`Query::ANY`] only.
     #[inline(always)]

@@ -37,6 +37,11 @@ pub trait Probe {
     /// A primitive was tested.
     #[inline(always)]
     fn prim(&mut self) {}
+
+    /// A hit was found outside the cell it was found in: kept, not returned, since something in a
+    /// cell between may be hit before it.
+    #[inline(always)]
+    fn outside(&mut self) {}
 }
 
 /// Why a node or cell is left out.
@@ -59,6 +64,8 @@ pub enum Step {
     Pruned(u32, Prune),
     /// A primitive was tested: where it is met, if it is in the interval that was left.
     Tested(PrimRef, Option<f32>),
+    /// The hit lies outside the cell it was found in: kept, not returned.
+    OutsideCell,
 }
 
 /// Counts, and tells each step to a listener if there is one.
@@ -109,6 +116,11 @@ impl Probe for Watched<'_> {
     fn prim(&mut self) {
         self.counts.prim();
     }
+
+    fn outside(&mut self) {
+        self.counts.outside();
+        self.tell(Step::OutsideCell);
+    }
 }
 
 /// Nobody watches.
@@ -124,8 +136,10 @@ pub struct Counts {
     pub nodes: u64,
     /// Leaves entered.
     pub leaves: u64,
-    /// Primitives tested.
+    /// Primitives tested; one that a mailbox skips is not.
     pub prims: u64,
+    /// Hits found outside the cell they were found in: kept, not returned.
+    pub outside: u64,
 }
 
 impl Probe for Counts {
@@ -143,6 +157,11 @@ impl Probe for Counts {
     fn prim(&mut self) {
         self.prims += 1;
     }
+
+    #[inline(always)]
+    fn outside(&mut self) {
+        self.outside += 1;
+    }
 }
 
 impl std::ops::AddAssign for Counts {
@@ -150,5 +169,6 @@ impl std::ops::AddAssign for Counts {
         self.nodes += other.nodes;
         self.leaves += other.leaves;
         self.prims += other.prims;
+        self.outside += other.outside;
     }
 }

@@ -2,6 +2,7 @@
 //! 32-bit floats by the rules that ARCHITECTURE.md states; sums, areas and costs are 64-bit.
 
 mod aabb;
+mod clip;
 mod degenerate;
 pub mod num;
 mod overlap;
@@ -12,6 +13,7 @@ pub mod space;
 pub mod tri;
 
 pub use aabb::{Aabb, Axis};
+pub use clip::Clipped;
 pub use degenerate::has_zero_area;
 pub use overlap::triangle_overlaps_box;
 pub use ray::Ray;

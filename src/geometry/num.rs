@@ -27,3 +27,17 @@ pub fn floor_index(x: f64, max: usize) -> usize {
 
 /// The unit roundoff of 32-bit floats: half the distance from 1 to the next float.
 pub const UNIT_ROUNDOFF: f32 = f32::EPSILON / 2.0;
+
+/// The greatest 32-bit float that is not above `x`.
+#[inline(always)]
+pub fn narrow_down(x: f64) -> f32 {
+    let near = narrow(x);
+    if f64::from(near) > x { near.next_down() } else { near }
+}
+
+/// The least 32-bit float that is not below `x`.
+#[inline(always)]
+pub fn narrow_up(x: f64) -> f32 {
+    let near = narrow(x);
+    if f64::from(near) < x { near.next_up() } else { near }
+}

@@ -1,15 +1,28 @@
 //! The build loop of the k-d tree: divide a cell where it is cheapest, give each side the triangles
 //! that overlap it, and again, until a leaf is better.
 //!
+//! Planes are searched for exactly, over events that are sorted once and kept in order while cells
+//! are divided, in O(N log N) (Wald and Havran 2006, §4.3); or by bins down to cells of [`Search`]'s
+//! size. Large cells fork onto the pool, and their own work is done in parallel portions; a subtree
+//! below [`FORK`] references is built by one thread into a list of its own (`serial`), and the lists
+//! are joined at the end. So nothing is shared while building, and the tree does not depend on the
+//! number of threads.
+//!
 //! A cell whose best plane costs more than a leaf is divided a few times more in the hope of a
-//! better one further down (Pharr, Jakob and Humphreys 2016, §4.4.2: bad refines).
+//! better one further down (Pharr, Jakob and Humphreys 2016, §4.4.2: bad refines). Empty space is
+//! cut off at a rebate when planes are compared, but whether a plane is a bad one goes by its full
+//! cost: otherwise cells of a few triangles would be whittled down without end, for nothing.
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::planes::{Costs, KdRef, Plane};
+use super::costs::{Costs, Plane};
+use super::deal::{Dealer, Dealt, HIGH, KdRef, LOW, Moved, Side, keep, merge};
+use super::events::{self, Event, Lists, MAX_REFS};
+use super::serial::Bench;
 use super::tree::{Built, KdNode, MAX_COUNT, MAX_DEPTH};
+use super::{bins, sort, sweep};
 use crate::accel::{BuildCx, BuildError};
 use crate::geometry::{Aabb, num};
 use crate::scene::{Geometry, PrimRef};
@@ -24,9 +37,23 @@ pub struct Limits {
     pub max_depth: u32,
 }
 
-/// Triangles below which a subtree is built by one thread.
+/// How planes are searched for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// Every place where a box begins or ends.
+    Exact,
+    /// Only between bins, until a cell has few enough references for the exact search.
+    Binned {
+        /// Bins on each axis.
+        bins: u32,
+        /// The fewest references that are binned.
+        least: u32,
+    },
+}
+
+/// References below which a subtree is built by one thread.
 const FORK: usize = 4096;
-/// Triangles handled between two looks at the cancel flag.
+/// References, or events, handled between two looks at the cancel flag.
 const CHUNK: usize = 1 << 14;
 /// Planes in a row that may cost more than a leaf.
 const BAD_REFINES: u32 = 3;
@@ -38,8 +65,9 @@ enum Subtree {
 }
 
 /// A subtree as it will be, numbered within itself, with the memory it took.
-struct List {
-    nodes: Vec<KdNode>,
+pub struct List {
+    /// Its nodes.
+    pub nodes: Vec<KdNode>,
     refs: Vec<PrimRef>,
     charge: Charge,
 }
@@ -48,26 +76,30 @@ struct List {
 ///
 /// # Errors
 /// Cancelled, over the memory budget, or more nodes or references than fit their indices.
-pub fn build(geometry: &Arc<Geometry>, costs: &Costs, limits: Limits, cx: &BuildCx) -> Result<Built, BuildError> {
+pub fn build(
+    geometry: &Arc<Geometry>,
+    costs: &Costs,
+    search: Search,
+    limits: Limits,
+    remarks: Vec<String>,
+    cx: &BuildCx,
+) -> Result<Built, BuildError> {
     let n = geometry.live_count();
-    cx.progress.start("bound", n as u64);
-    let chunk = |c: usize| {
-        cx.cancel.check().map(|()| (c * CHUNK..n.min((c + 1) * CHUNK)).map(|i| reference(geometry, i)).collect::<Vec<_>>())
-    };
-    let held = cx.budget.charge((n * size_of::<KdRef>() * 2) as u64).map_err(too_large)?;
-    let chunks: Result<Vec<_>, _> = cx.pool.run(|| (0..n.div_ceil(CHUNK)).into_par_iter().map(chunk).collect());
-    let refs = chunks?.concat();
-    drop(held);
-
-    cx.progress.start("split", n as u64);
+    if n >= MAX_REFS {
+        return Err(too_many("references in a cell"));
+    }
     let max_depth = if limits.max_depth == 0 { auto_depth(n) } else { limits.max_depth };
-    let builder = Builder { costs, max_leaf: limits.max_leaf as usize, max_depth, cx };
-    let cell = Work { cell: *geometry.bounds(), depth: 0, bad: 0, share: n as f64 };
-    let tree = cx.pool.run(|| builder.subtree(cell, refs))?;
+    let builder = Builder { geometry, costs, search, max_leaf: limits.max_leaf as usize, max_depth, cx };
+    cx.progress.start("bound", n as u64);
+    let all = builder.everything()?;
+    cx.progress.start("split", n as u64);
+    let work = Work { cell: *geometry.bounds(), depth: 0, bad: 0, share: n as f64 };
+    let tree = cx.pool.run(|| builder.subtree(work, all))?;
     cx.progress.start("join", 0);
     let (nodes, refs) = join(tree)?;
     let bytes = (nodes.capacity() * size_of::<KdNode>() + refs.capacity() * size_of::<PrimRef>()) as u64;
-    Ok(Built { geometry: Arc::clone(geometry), nodes, refs, _charge: cx.budget.charge(bytes).map_err(too_large)? })
+    let charge = cx.budget.charge(bytes).map_err(too_large)?;
+    Ok(Built { geometry: Arc::clone(geometry), nodes, refs, remarks, _charge: charge })
 }
 
 /// 8 + 1.3 log2 n (Havran and Bittner 2002).
@@ -76,12 +108,8 @@ fn auto_depth(n: usize) -> u32 {
     num::index(num::floor_index(depth.round(), MAX_DEPTH as usize))
 }
 
-fn reference(geometry: &Geometry, i: usize) -> KdRef {
-    let prim = geometry.live(i);
-    KdRef { bounds: Aabb::of_triangle(&geometry.corners(prim)), prim }
-}
-
-fn too_large(over: OverBudget) -> BuildError {
+/// What to say of a build over its memory.
+pub fn too_large(over: OverBudget) -> BuildError {
     BuildError::Memory { structure: "kdtree", over, remedy: "Raise the memory budget, lower max_depth, or use bvh." }
 }
 
@@ -91,78 +119,175 @@ fn too_many(what: &'static str) -> BuildError {
 
 /// A cell to be divided, and what is known of it.
 #[derive(Clone, Copy)]
-struct Work {
-    cell: Aabb,
+pub struct Work {
+    /// Its box.
+    pub cell: Aabb,
     depth: u32,
     bad: u32,
     /// The progress its end stands for, in triangles of the scene.
     share: f64,
 }
 
-struct Builder<'a> {
+/// The references of a cell, their events where they are kept, and the memory of both.
+struct Part {
+    refs: Vec<KdRef>,
+    lists: Option<Lists>,
+    charge: Charge,
+}
+
+/// What every step of a build needs.
+pub struct Builder<'a> {
+    /// What it is built over.
+    pub geometry: &'a Geometry,
     costs: &'a Costs,
+    search: Search,
     max_leaf: usize,
     max_depth: u32,
     cx: &'a BuildCx,
 }
 
 impl Builder<'_> {
-    fn subtree(&self, work: Work, refs: Vec<KdRef>) -> Result<Subtree, BuildError> {
-        if refs.len() < FORK {
-            let charge = self.cx.budget.charge(0).map_err(too_large)?;
-            let mut list = List { nodes: Vec::new(), refs: Vec::new(), charge };
-            self.fill(&mut list, work, &refs)?;
+    /// Whether a cell of so many references is searched exactly.
+    pub fn is_exact(&self, refs: usize) -> bool {
+        match self.search {
+            Search::Exact => true,
+            Search::Binned { least, .. } => refs < least as usize,
+        }
+    }
+
+    fn everything(&self) -> Result<Part, BuildError> {
+        let (n, cx) = (self.geometry.live_count(), self.cx);
+        let mut charge = self.charge(0)?;
+        charge.grow((2 * n * size_of::<KdRef>()) as u64).map_err(too_large)?;
+        let reference = |i| {
+            let prim = self.geometry.live(i);
+            KdRef { bounds: Aabb::of_triangle(&self.geometry.corners(prim)), prim }
+        };
+        let chunk = |c: usize| cx.cancel.check().map(|()| (c * CHUNK..n.min((c + 1) * CHUNK)).map(reference).collect::<Vec<_>>());
+        let chunks: Result<Vec<_>, _> = cx.pool.run(|| (0..n.div_ceil(CHUNK)).into_par_iter().map(chunk).collect());
+        let refs = chunks?.concat();
+        if n < FORK || !self.is_exact(n) {
+            return Ok(Part { refs, lists: None, charge });
+        }
+        cx.progress.start("sort", 0);
+        charge.grow((3 * 2 * 2 * n * size_of::<Event>()) as u64).map_err(too_large)?;
+        let lists = cx.pool.run(|| self.sorted(&refs))?;
+        Ok(Part { refs, lists: Some(lists), charge })
+    }
+
+    /// The events of all axes, in order.
+    fn sorted(&self, refs: &[KdRef]) -> Result<Lists, BuildError> {
+        let events = |(c, refs): (usize, &[KdRef])| {
+            let mut lists = Lists::default();
+            refs.iter().enumerate().for_each(|(i, r)| events::append(&mut lists, &r.bounds, num::index(c * CHUNK + i)));
+            self.cx.cancel.check().map(|()| lists)
+        };
+        let chunks: Vec<Lists> = refs.par_chunks(CHUNK).enumerate().map(events).collect::<Result<_, _>>()?;
+        let axis = |k: usize| sort::sort(chunks.iter().flat_map(|lists| &lists[k]).copied().collect(), &self.cx.cancel);
+        let (x, (y, z)) = rayon::join(|| axis(0), || rayon::join(|| axis(1), || axis(2)));
+        Ok([x?, y?, z?])
+    }
+
+    fn charge(&self, bytes: usize) -> Result<Charge, BuildError> {
+        self.cx.budget.charge(bytes as u64).map_err(too_large)
+    }
+
+    fn subtree(&self, work: Work, part: Part) -> Result<Subtree, BuildError> {
+        let mut list = List { nodes: Vec::new(), refs: Vec::new(), charge: self.charge(0)? };
+        if part.refs.len() < FORK {
+            let events = part.lists.is_some();
+            let mut bench = Bench::new(part.refs, part.lists.unwrap_or_default(), part.charge);
+            self.fill(&mut list, &mut bench, work, events)?;
             return Ok(Subtree::List(list));
         }
-        let _held = self.cx.budget.charge(size_of_val(&refs[..]) as u64).map_err(too_large)?;
-        let Some((plane, bad)) = self.divide(&work, &refs)? else {
-            let charge = self.cx.budget.charge(0).map_err(too_large)?;
-            let mut list = List { nodes: Vec::new(), refs: Vec::new(), charge };
-            self.leaf(&mut list, &work, &refs)?;
+        let Some((plane, bad)) =
+            self.divide(&work, &part.refs, part.lists.as_ref().map(|lists| lists.each_ref().map(|l| &l[..])))?
+        else {
+            self.leaf(&mut list, &work, &part.refs)?;
             return Ok(Subtree::List(list));
         };
-        let (below, above) = deal(&refs, &plane);
-        drop(refs);
+        let (below, above) = self.deal(&work, part, &plane)?;
         let (low, high) = self.sides(&work, &plane, bad);
         let (low, high) = rayon::join(|| self.subtree(low, below), || self.subtree(high, above));
         Ok(Subtree::Fork(plane, Box::new((low?, high?))))
     }
 
-    /// The same by one thread, appended to a list.
-    fn fill(&self, list: &mut List, work: Work, refs: &[KdRef]) -> Result<(), BuildError> {
-        let Some((plane, bad)) = self.divide(&work, refs)? else { return self.leaf(list, &work, refs) };
-        let at = list.nodes.len();
-        list.nodes.push(KdNode::leaf(0, 0));
-        let (below, above) = deal(refs, &plane);
-        let (low, high) = self.sides(&work, &plane, bad);
-        self.fill(list, low, &below)?;
-        drop(below);
-        list.nodes[at] = KdNode::inner(plane.axis, plane.pos, num::index(list.nodes.len()));
-        self.fill(list, high, &above)
-    }
-
     /// The plane to divide at, and how many bad ones in a row that makes; `None` for a leaf.
-    fn divide(&self, work: &Work, refs: &[KdRef]) -> Result<Option<(Plane, u32)>, BuildError> {
-        self.cx.cancel.check()?;
+    pub fn divide(&self, work: &Work, refs: &[KdRef], lists: Option<[&[Event]; 3]>) -> Result<Option<(Plane, u32)>, BuildError> {
+        let cancel = &self.cx.cancel;
+        cancel.check()?;
         if refs.len() <= self.max_leaf || work.depth >= self.max_depth {
             return Ok(None);
         }
-        let Some(plane) = self.costs.best_plane(&work.cell, refs) else { return Ok(None) };
+        let found = match (lists, self.search) {
+            (None, Search::Binned { bins, .. }) => bins::best_plane(self.costs, &work.cell, refs, bins, cancel)?,
+            (lists, _) => sweep::best_plane(self.costs, &work.cell, refs.len(), lists.unwrap_or_default(), cancel)?,
+        };
+        let Some(plane) = found else { return Ok(None) };
         let leaf = self.costs.leaf(refs.len());
         let bad = if plane.cost < leaf { work.bad } else { work.bad + 1 };
-        let hopeless = (plane.cost > 4.0 * leaf && refs.len() < 16) || bad >= BAD_REFINES;
+        let hopeless = (plane.forgiven > 4.0 * leaf && refs.len() < 16) || bad >= BAD_REFINES;
         Ok((!hopeless).then_some((plane, bad)))
     }
 
-    fn sides(&self, work: &Work, plane: &Plane, bad: u32) -> (Work, Work) {
+    /// The cells on both sides of a plane.
+    pub fn sides(&self, work: &Work, plane: &Plane, bad: u32) -> (Work, Work) {
         let (low, high) = work.cell.split(plane.axis, plane.pos);
         let side = |cell| Work { cell, depth: work.depth + 1, bad, share: work.share * 0.5 };
         (side(low), side(high))
     }
 
-    fn leaf(&self, list: &mut List, work: &Work, refs: &[KdRef]) -> Result<(), BuildError> {
+    /// What each side of a large cell gets, worked out in parallel portions.
+    fn deal(&self, work: &Work, part: Part, plane: &Plane) -> Result<(Part, Part), BuildError> {
+        let dealer = Dealer { geometry: self.geometry, cell: work.cell, plane: *plane, events: part.lists.is_some() };
+        let chunk = |refs: &[KdRef]| {
+            let mut dealt = Dealt::default();
+            dealt.deal(refs, &dealer);
+            self.cx.cancel.check().map(|()| dealt)
+        };
+        let chunks: Vec<Dealt> = part.refs.par_chunks(CHUNK).map(chunk).collect::<Result<_, _>>()?;
+        let mut dealt = chunks.into_iter().reduce(|mut all, more| (all.append(more), all).1).unwrap_or_default();
+        let (low, high) = (std::mem::take(&mut dealt.low), std::mem::take(&mut dealt.high));
+        let lists = part.lists.as_ref();
+        let side = |side: Side, bit| self.side(side, lists, &dealt.moved, bit);
+        let (low, high) = rayon::join(|| side(low, LOW), || side(high, HIGH));
+        Ok((low?, high?))
+    }
+
+    /// One side's part: its references, and of the cell's events those that it keeps.
+    fn side(&self, side: Side, lists: Option<&Lists>, moved: &[Moved], bit: u32) -> Result<Part, BuildError> {
+        let events = if lists.is_some() { 6 * side.refs.len() * size_of::<Event>() } else { 0 };
+        let charge = self.charge(side.refs.len() * size_of::<KdRef>() + events)?;
+        let Some([x, y, z]) = lists else { return Ok(Part { refs: side.refs, lists: None, charge }) };
+        let [fresh_x, fresh_y, fresh_z] = side.fresh;
+        let axis = |events, fresh| self.keep_sorted(events, fresh, moved, bit);
+        let (x, (y, z)) = rayon::join(|| axis(x, fresh_x), || rayon::join(|| axis(y, fresh_y), || axis(z, fresh_z)));
+        Ok(Part { refs: side.refs, lists: Some([x?, y?, z?]), charge })
+    }
+
+    /// Keeps and merges in chunks of the cell's events; the fresh ones go where they belong.
+    fn keep_sorted(&self, events: &[Event], fresh: Vec<Event>, moved: &[Moved], bit: u32) -> Result<Vec<Event>, BuildError> {
+        let fresh = sort::sort(fresh, &self.cx.cancel)?;
+        let chunk = |(c, own): (usize, &[Event])| {
+            // The kept events are renamed, so fresh ones are divided by place and kind alone.
+            let place = |i: usize| events.get(i).map(|e| e.renamed(0));
+            let from = if c == 0 { 0 } else { place(c * CHUNK).map_or(0, |at| fresh.partition_point(|e| *e < at)) };
+            let to = place((c + 1) * CHUNK).map_or(fresh.len(), |at| fresh.partition_point(|e| *e < at));
+            let mut mine = fresh[from..to].to_vec();
+            let mut out = vec![Event::default(); own.len() + mine.len()];
+            let kept = keep(own, moved, bit, &mut out);
+            let n = merge(&mut out, kept, &mut mine);
+            out.truncate(n);
+            self.cx.cancel.check().map(|()| out)
+        };
+        let chunks: Vec<Vec<Event>> = events.par_chunks(CHUNK).enumerate().map(chunk).collect::<Result<_, _>>()?;
+        Ok(if chunks.len() == 1 { chunks.into_iter().flatten().collect() } else { chunks.concat() })
+    }
+
+    /// Appends a leaf.
+    pub fn leaf(&self, list: &mut List, work: &Work, refs: &[KdRef]) -> Result<(), BuildError> {
         // A leaf, the division above it, and the references.
-        let growth = size_of::<KdNode>() * 2 + refs.len() * size_of::<PrimRef>();
+        let growth = size_of::<KdNode>() * 2 + size_of_val(refs) / size_of::<KdRef>() * size_of::<PrimRef>();
         list.charge.grow(growth as u64).map_err(too_large)?;
         list.nodes.push(KdNode::leaf(num::index(list.refs.len()), num::index(refs.len())));
         list.refs.extend(refs.iter().map(|r| r.prim));
@@ -172,27 +297,6 @@ impl Builder<'_> {
         Ok(())
     }
 }
-
-/// Each side's triangles, their boxes cut at the plane. One that lies in the plane is below.
-fn deal(refs: &[KdRef], plane: &Plane) -> (Vec<KdRef>, Vec<KdRef>) {
-    let (k, pos) = (plane.axis.index(), plane.pos);
-    let (mut below, mut above) = (Vec::new(), Vec::new());
-    for r in refs {
-        let is_above = r.bounds.max[k] > pos;
-        if r.bounds.min[k] < pos || !is_above {
-            let mut low = *r;
-            low.bounds.max[k] = low.bounds.max[k].min(pos);
-            below.push(low);
-        }
-        if is_above {
-            let mut high = *r;
-            high.bounds.min[k] = high.bounds.min[k].max(pos);
-            above.push(high);
-        }
-    }
-    (below, above)
-}
-
 /// Copies the forks and lists into one, the child below a plane right after its parent.
 fn join(tree: Subtree) -> Result<(Vec<KdNode>, Vec<PrimRef>), BuildError> {
     enum Step {

@@ -11,9 +11,10 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use super::mailbox::Mailbox;
 use crate::accel::best::Best;
 use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape, Split};
-use crate::accel::probe::Probe;
+use crate::accel::probe::{Probe, Prune};
 use crate::accel::{PrimHit, Query, Structure};
 use crate::geometry::tri::TriTest;
 use crate::geometry::{Aabb, Axis, Ray};
@@ -93,18 +94,21 @@ pub struct Built {
     pub nodes: Vec<KdNode>,
     /// What the leaves hold.
     pub refs: Vec<PrimRef>,
+    /// What the builder decided, in words.
+    pub remarks: Vec<String>,
     /// The memory of both.
     pub _charge: Charge,
 }
 
-/// A k-d tree traced with the triangle test `T`.
+/// A k-d tree traced with the triangle test `T`; if `MAILBOX`, each ray remembers the last triangles
+/// it was tested against.
 #[derive(Debug)]
-pub struct KdTree<T> {
+pub struct KdTree<T, const MAILBOX: bool> {
     built: Built,
     test: PhantomData<T>,
 }
 
-impl<T: TriTest> KdTree<T> {
+impl<T: TriTest, const MAILBOX: bool> KdTree<T, MAILBOX> {
     /// Takes what the builder made.
     pub const fn new(built: Built) -> Self {
         Self { built, test: PhantomData }
@@ -129,7 +133,7 @@ struct Aside {
     exit: f32,
 }
 
-impl<T: TriTest> Structure for KdTree<T> {
+impl<T: TriTest, const MAILBOX: bool> Structure for KdTree<T, MAILBOX> {
     fn geometry(&self) -> &Arc<Geometry> {
         &self.built.geometry
     }
@@ -152,8 +156,10 @@ impl<T: TriTest> Structure for KdTree<T> {
         let mut stack = [Aside { node: 0, entry: 0.0, exit: 0.0 }; MAX_DEPTH as usize];
         let mut top = 0;
         let mut current = 0u32;
+        let mut mailbox = Mailbox::new();
         loop {
             probe.node();
+            probe.at(current);
             let node = self.built.nodes[current as usize];
             if !node.is_leaf() {
                 let axis = node.axis();
@@ -161,12 +167,15 @@ impl<T: TriTest> Structure for KdTree<T> {
                 let (below, above) = (current + 1, node.above());
                 let (near, far) = if slabs.backward(axis) { (above, below) } else { (below, above) };
                 if late < entry {
+                    probe.pruned(near, Prune::Missed);
                     current = far;
                 } else {
                     if early <= exit {
                         stack[top] = Aside { node: far, entry: entry.max(early), exit };
                         top += 1;
                         exit = exit.min(late);
+                    } else {
+                        probe.pruned(far, Prune::Missed);
                     }
                     current = near;
                 }
@@ -174,8 +183,15 @@ impl<T: TriTest> Structure for KdTree<T> {
             }
             probe.leaf();
             for prim in &self.built.refs[node.refs()] {
+                if MAILBOX && mailbox.holds_or_takes(*prim) {
+                    continue;
+                }
+                let known = best.is_of(*prim);
                 if best.test(&test, &self.built.geometry.corners(*prim), *prim, query, probe) {
                     return best.found();
+                }
+                if !known && best.is_of(*prim) && !(entry <= best.t() && best.t() <= exit) {
+                    probe.outside();
                 }
             }
             // The next cell in front of the best hit. Cells come front to back but for those on both
@@ -188,13 +204,14 @@ impl<T: TriTest> Structure for KdTree<T> {
                 if stack[top].entry <= best.t() {
                     break;
                 }
+                probe.pruned(stack[top].node, Prune::BehindHit);
             }
             Aside { node: current, entry, exit } = stack[top];
         }
     }
 }
 
-impl<T: TriTest> Cells for KdTree<T> {
+impl<T: TriTest, const MAILBOX: bool> Cells for KdTree<T, MAILBOX> {
     fn root(&self) -> Cell {
         self.cell(0, 0, *self.built.geometry.bounds())
     }
@@ -219,6 +236,10 @@ impl<T: TriTest> Cells for KdTree<T> {
 
     fn layout(&self) -> Layout {
         Layout::Partition
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.built.remarks.clone()
     }
 
     fn memory(&self) -> Vec<MemoryPart> {

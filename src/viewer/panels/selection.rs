@@ -139,6 +139,7 @@ fn sentence(step: &Step) -> String {
         Step::Pruned(node, Prune::Missed) => format!("leaves {node} out: the ray misses it"),
         Step::Pruned(node, Prune::Outside) => format!("leaves {node} out: beyond the ray's interval"),
         Step::Pruned(node, Prune::BehindHit) => format!("leaves {node} out: behind the best hit"),
+        Step::OutsideCell => "hit outside this cell: kept, not returned".to_owned(),
         Step::Tested(prim, None) => format!("tests triangle {prim}: no hit before the best one"),
         Step::Tested(prim, Some(t)) => format!("tests triangle {prim}: hit at t = {}", format::number(f64::from(*t))),
     }
