@@ -3,15 +3,22 @@
 
 mod aabb;
 mod degenerate;
+pub mod hull;
+pub mod kdop;
+pub mod line;
 pub mod num;
+pub mod obb;
 mod overlap;
+pub mod polytope;
 mod ray;
 mod slabs;
 pub mod space;
+pub mod sphere;
 pub mod tri;
 
 pub use aabb::{Aabb, Axis};
 pub use degenerate::has_zero_area;
+pub use line::Line;
 pub use overlap::triangle_overlaps_box;
 pub use ray::Ray;
 pub use slabs::Slabs;

@@ -27,3 +27,15 @@ pub fn floor_index(x: f64, max: usize) -> usize {
 
 /// The unit roundoff of 32-bit floats: half the distance from 1 to the next float.
 pub const UNIT_ROUNDOFF: f32 = f32::EPSILON / 2.0;
+
+/// A 32-bit float that is surely less.
+#[inline(always)]
+pub const fn round_down(x: f64) -> f32 {
+    narrow(x).next_down()
+}
+
+/// A 32-bit float that is surely greater.
+#[inline(always)]
+pub const fn round_up(x: f64) -> f32 {
+    narrow(x).next_up()
+}
