@@ -18,8 +18,9 @@ impl Sphere {
     /// About `centre`, rounded to 32 bits, and as large as `reach` asks for: the greatest distance
     /// of a point from the rounded centre.
     pub fn new(centre: Vec3, reach: f64) -> Self {
-        // 64 bits err by a few 1e-16 of the distance.
-        Self { centre, radius: round_up(reach * (1.0 + 1e-14)) }
+        // 64 bits err by a few 1e-16 of the coordinates that distances are taken between.
+        let slack = 1e-14 * (reach + f64::from(centre.abs().element_sum()));
+        Self { centre, radius: round_up(reach + slack) }
     }
 
     /// Where the line may hit what lies in the sphere; `None` if it misses.

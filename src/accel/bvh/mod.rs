@@ -8,7 +8,8 @@ mod topdown;
 mod tree;
 
 pub use binned::Binned;
-pub use tree::Bvh;
+pub use topdown::{Limits, build as build_topdown};
+pub use tree::{Built, Bvh, MAX_DEPTH, Node, Packed};
 
 use std::sync::Arc;
 

@@ -56,8 +56,14 @@ impl Node {
         Self { first, ..*self }
     }
 
+    /// The left child, or a leaf's first triangle; and the triangles of a leaf, 0 for an inner node.
+    pub const fn first_and_count(&self) -> (u32, u32) {
+        (self.first, self.count)
+    }
+
+    /// The box around it.
     #[inline(always)]
-    fn bounds(&self) -> Aabb {
+    pub fn bounds(&self) -> Aabb {
         Aabb { min: self.min, max: self.max }
     }
 }
