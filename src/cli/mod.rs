@@ -19,6 +19,7 @@ mod structures;
 mod table;
 mod trace;
 mod view;
+mod volumes;
 
 pub use failure::Failure;
 
@@ -48,6 +49,8 @@ enum Command {
     Stats(stats::Args),
     /// Build structures and time them on the same rays, in turns.
     Compare(compare::Args),
+    /// Compare bounding volumes around the nodes of one tree: tightness against cost.
+    Volumes(volumes::Args),
     /// Render a picture to a PNG file.
     Render(render::Args),
     /// Write the rays of a view to a NumPy file.
@@ -76,6 +79,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Scenes(args) => scenes::run(&args),
         Command::Stats(args) => stats::run(&args, cancel),
         Command::Compare(args) => compare::run(&args, cancel),
+        Command::Volumes(args) => volumes::run(&args, cancel),
         Command::Render(args) => render::run(&args, cancel),
         Command::Rays(args) => rays::run(&args, cancel),
         Command::Trace(args) => trace::run(&args, cancel),

@@ -12,6 +12,7 @@ mod report;
 mod sample;
 pub mod statistics;
 mod timing;
+mod volumes;
 
 pub use building::{BuiltRow, build_timed};
 pub use facts::{MachineFacts, SceneFacts};
@@ -19,3 +20,4 @@ pub use measure::{Contestant, Fairness, MeasureOptions, measure};
 pub use rays::{RayKind, RaySet};
 pub use report::{BuiltFacts, Report, StructureRow};
 pub use timing::{Timing, is_tie};
+pub use volumes::{VolumeRow, VolumeTree, measure_volumes};
