@@ -20,6 +20,7 @@ pub mod probe;
 pub mod registry;
 pub mod stats;
 pub mod validate;
+pub mod volumes;
 
 pub use build::{BuildCx, BuildError};
 pub use cell::{Cell, CellId, CellKind, Cells, MemoryPart, Shape, Split};

@@ -14,6 +14,12 @@ pub trait Probe {
         let _ = node;
     }
 
+    /// The bounds of a node were tested, to find out whether to enter it.
+    #[inline(always)]
+    fn bounds(&mut self, node: u32) {
+        let _ = node;
+    }
+
     /// A node or cell is left out.
     #[inline(always)]
     fn pruned(&mut self, node: u32, why: Prune) {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::params::{Param, ParamValues};
-use super::{Accel, BuildCx, BuildError, brute, bvh, grid, kdtree, octree};
+use super::{Accel, BuildCx, BuildError, brute, bvh, grid, kdtree, octree, volumes};
 use crate::geometry::tri::{Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 
@@ -97,6 +97,15 @@ pub const ALL: &[Entry] = &[
         params: bvh::PARAMS,
         watertight: bvh::build::<Watertight>,
         fast: bvh::build::<Fast>,
+    },
+    Entry {
+        id: "volumes",
+        name: "Bounding volumes",
+        family: Family::Bvh,
+        help: "The tree of the BVH with spheres, turned boxes, k-DOPs or convex hulls around its nodes: tightness against cost.",
+        params: volumes::PARAMS,
+        watertight: volumes::build::<Watertight>,
+        fast: volumes::build::<Fast>,
     },
     Entry {
         id: "kdtree",

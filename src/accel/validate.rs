@@ -1,10 +1,13 @@
 //! Whether a structure is well formed: cells lie in their parents, triangles in their leaves, no
 //! cell is met twice, and every live triangle can be reached.
+//!
+//! Of volumes that are no boxes a child's may stick out of its parent's, as a sphere around a half
+//! does out of the sphere around the whole: there the triangles below must lie in the parent.
 
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 
-use super::cell::{Cells, Descend, Layout, walk};
+use super::cell::{Cell, Cells, Descend, Layout, Shape, walk};
 use crate::geometry::Aabb;
 use crate::scene::Geometry;
 
@@ -55,7 +58,11 @@ pub fn defects(cells: &dyn Cells, geometry: &Geometry, limit: usize) -> Vec<Defe
         // A grid is a little larger than what it was made for.
         if cells.layout().slack().is_none() || cell.depth > 0 {
             cells.children(cell, &mut |child| {
-                if !taken_in(bounds, cells.layout()).contains_box(child.shape.bounds()) {
+                let inside = match cell.shape {
+                    Shape::Box(_) => *child.shape.bounds(),
+                    Shape::Convex { .. } => triangles_below(cells, &child, geometry),
+                };
+                if !taken_in(bounds, cells.layout()).contains_box(&inside) {
                     found.push(Defect::Outside { child: child.id.node, parent: cell.id.node });
                 }
                 ControlFlow::Continue(())
@@ -83,6 +90,20 @@ pub fn defects(cells: &dyn Cells, geometry: &Geometry, limit: usize) -> Vec<Defe
         found.extend(wrong.take(limit).map(|prim| Defect::Coverage { prim, times: times[prim as usize] }));
     }
     found
+}
+
+/// The tightest box around all triangles in the leaves below and including a cell.
+fn triangles_below(cells: &dyn Cells, cell: &Cell, geometry: &Geometry) -> Aabb {
+    let mut bounds = Aabb::EMPTY;
+    let mut open = vec![*cell];
+    while let Some(cell) = open.pop() {
+        cells.prims(&cell, &mut |prim| bounds = bounds.union(Aabb::of_triangle(&geometry.corners(prim))));
+        cells.children(&cell, &mut |child| {
+            open.push(child);
+            ControlFlow::Continue(())
+        });
+    }
+    bounds
 }
 
 /// The cell with what its layout says it takes in, and the rounding of its box to 32 bits.

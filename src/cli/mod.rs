@@ -21,6 +21,7 @@ mod structures;
 mod table;
 mod trace;
 mod view;
+mod volumes;
 
 pub use failure::Failure;
 
@@ -52,6 +53,8 @@ enum Command {
     Compare(compare::Args),
     /// Time builds and rays over a model in growing numbers of triangles.
     Scaling(scaling::Args),
+    /// Compare bounding volumes around the nodes of one tree: tightness against cost.
+    Volumes(volumes::Args),
     /// Render a picture to a PNG file.
     Render(render::Args),
     /// Write the rays of a view to a NumPy file.
@@ -81,6 +84,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Stats(args) => stats::run(&args, cancel),
         Command::Compare(args) => compare::run(&args, cancel),
         Command::Scaling(args) => scaling::run(&args, cancel),
+        Command::Volumes(args) => volumes::run(&args, cancel),
         Command::Render(args) => render::run(&args, cancel),
         Command::Rays(args) => rays::run(&args, cancel),
         Command::Trace(args) => trace::run(&args, cancel),

@@ -4,17 +4,24 @@
 mod aabb;
 mod clip;
 mod degenerate;
+pub mod hull;
+pub mod kdop;
+pub mod line;
 pub mod num;
+pub mod obb;
 mod overlap;
 pub mod polygon;
+pub mod polytope;
 mod ray;
 mod slabs;
 pub mod space;
+pub mod sphere;
 pub mod tri;
 
 pub use aabb::{Aabb, Axis};
 pub use clip::Clipped;
 pub use degenerate::has_zero_area;
+pub use line::Line;
 pub use overlap::triangle_overlaps_box;
 pub use ray::Ray;
 pub use slabs::Slabs;

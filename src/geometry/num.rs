@@ -41,3 +41,15 @@ pub fn narrow_up(x: f64) -> f32 {
     let near = narrow(x);
     if f64::from(near) < x { near.next_up() } else { near }
 }
+
+/// A 32-bit float that is surely less.
+#[inline(always)]
+pub const fn round_down(x: f64) -> f32 {
+    narrow(x).next_down()
+}
+
+/// A 32-bit float that is surely greater.
+#[inline(always)]
+pub const fn round_up(x: f64) -> f32 {
+    narrow(x).next_up()
+}

@@ -19,6 +19,7 @@ pub mod scaling;
 pub mod statistics;
 mod timing;
 mod uncut;
+mod volumes;
 
 pub use building::{BuiltRow, build_timed};
 pub use costs::{Costs, FitOptions, fit_costs};
@@ -31,3 +32,4 @@ pub use report::{BuiltFacts, CostRow, Report, StructureRow};
 pub use sah_curve::{Chosen, SahCurves, of_node as sah_curves};
 pub use timing::{Timing, is_tie};
 pub use uncut::{Enough, UncutLines};
+pub use volumes::{VolumeRow, VolumeTree, measure_volumes};

@@ -83,11 +83,43 @@ fn compare_prints_one_table_for_each_kind_and_names_its_terms() {
 }
 
 #[test]
+fn volumes_follows_the_schema() {
+    let args = ["volumes", "builtin:cornell-box", "--rays", "diffuse", "--size", "48x32", "--repeat", "2", "--secs", "0.01"];
+    let report = json(&[&args[..], &["--threads", "2", "--json"]].concat());
+    assert_keys(&report, &["scene", "machine", "size", "kind", "nodes", "volumes"]);
+    let rows = report["volumes"].as_array().expect("a list");
+    let ids: Vec<&str> = rows.iter().filter_map(|row| row["id"].as_str()).collect();
+    assert_eq!(ids, ["aabb", "sphere", "obb", "kdop6", "kdop8", "kdop14", "kdop18", "kdop26", "hull"]);
+    let of = |id: &str, key: &str| rows[ids.iter().position(|i| *i == id).expect("a row")][key].as_f64().expect("a number");
+    for row in rows {
+        assert_keys(row, &["build_secs", "area_nodes", "simplified", "failed", "rays_counted", "tests_per_ray", "nodes_per_ray"]);
+        assert_eq!(row["rays"]["hits"], rows[0]["rays"]["hits"], "all hit the same");
+        assert_eq!(row["area_nodes"], report["nodes"], "every hull of this scene is known");
+        assert!(row["area_ratio"].as_f64() > Some(0.999) && row["test_ns"]["median"].as_f64() > Some(0.0), "{row}");
+        assert!(row["false_positives"].as_f64().is_some_and(|share| (0.0..1.0).contains(&share)), "{row}");
+    }
+    assert_eq!(of("aabb", "area_ratio"), of("kdop6", "area_ratio"));
+    assert_eq!((of("sphere", "bytes_per_node"), of("aabb", "bytes_per_node")), (24.0, 32.0));
+    assert!(of("hull", "area_ratio") <= of("kdop26", "area_ratio") && of("kdop26", "area_ratio") <= of("aabb", "area_ratio"));
+    assert!(of("hull", "nodes_per_ray") <= of("aabb", "nodes_per_ray"));
+}
+
+#[test]
+fn volumes_prints_a_table() {
+    let table =
+        good(&["volumes", "builtin:cornell-box", "--size", "16x16", "--repeat", "1", "--secs", "0.01", "--set", "max_leaf=2"]);
+    for word in ["bytes/node", "ns/test", "in vain", "primary rays", "kdop14", "hull", "convex hulls", "watertight test"] {
+        assert!(table.contains(word), "{word} is not in\n{table}");
+    }
+}
+
+#[test]
 fn a_structure_that_does_not_fit_is_a_row_with_the_reason() {
     let args = ["compare", "builtin:soup?triangles=20000", "--memory", "3", "--rays", "primary", "--size", "16x16"];
     let report = json(&[&args[..], &["--secs", "0.01", "--repeat", "1", "--json"]].concat());
     let rows = report["structures"].as_array().expect("a list");
-    let (brute, kdtree) = (&rows[0], &rows[3]);
+    let kdtree = rows.iter().find(|row| row["id"] == "kdtree").expect("a row");
+    let brute = &rows[0];
     assert_eq!((&brute["id"], &kdtree["id"]), (&json!("brute"), &json!("kdtree")));
     assert!(brute.get("error").is_none() && brute["rays"]["primary"]["count"].as_u64() > Some(0));
     assert!(kdtree["error"].as_str().expect("a reason").contains("memory budget"));

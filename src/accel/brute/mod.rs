@@ -67,6 +67,7 @@ impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
             }
         }
         probe.node();
+        probe.at(0);
         probe.leaf();
         for (c, blocks) in self.blocks.chunks(BLOCKS_PER_CHECK).enumerate() {
             check()?;

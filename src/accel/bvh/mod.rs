@@ -22,6 +22,8 @@ mod sweep;
 mod topdown;
 mod tree;
 
+pub use tree::{Built, MAX_DEPTH, Node, Packed};
+
 use std::sync::Arc;
 
 use super::params::{C_ISECT, C_TRAV, Kind, Param, ParamValues};
@@ -122,6 +124,16 @@ pub const PARAMS: &[Param] = &[
         kind: Kind::Choice { options: &["on", "off"] },
     },
 ];
+
+/// The bare tree, for structures that put something else around its nodes. Parameters that they do
+/// not have are at their defaults.
+pub fn tree(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Built, BuildError> {
+    let mut all = ParamValues::defaults(PARAMS);
+    for (param, value) in all.iter_mut() {
+        *value = p.iter().find(|(given, _)| given.id == param.id).map_or(*value, |(_, given)| given);
+    }
+    build::build(geometry, &all, cx)
+}
 
 /// Builds and puts the traversal together that the parameters ask for.
 pub fn build<T: TriTest>(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Box<dyn Accel>, BuildError> {

@@ -74,6 +74,11 @@ impl Node {
         Self { min: b.min, max: b.max, ..*self }
     }
 
+    /// The left child, or a leaf's first triangle; and the triangles of a leaf, 0 for an inner node.
+    pub const fn first_and_count(&self) -> (u32, u32) {
+        (self.first, self.count)
+    }
+
     /// Its box.
     #[inline(always)]
     pub const fn bounds(&self) -> Aabb {

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::*;
+use crate::accel::cell::Layout;
 use crate::accel::cell::{Cell, CellId, CellKind, MemoryPart};
 use crate::accel::stats::Stats;
 use crate::scene::{Instance, LoadCx, Mesh, Scene};

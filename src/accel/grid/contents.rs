@@ -122,6 +122,7 @@ impl Contents {
         (query, probe): (&Q, &mut P),
     ) -> bool {
         probe.node();
+        probe.at(num::index(cell));
         let refs = self.of(cell);
         if refs.is_empty() {
             return false;

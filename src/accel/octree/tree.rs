@@ -84,6 +84,7 @@ impl<T: TriTest> Structure for Octree<T> {
         let mut top = 0;
         loop {
             probe.node();
+            probe.at(visit.node);
             let node = self.built.nodes[visit.node as usize];
             if node.is_leaf() {
                 probe.leaf();

@@ -1,0 +1,126 @@
+//! Boxes with their corners and edges cut off by slabs of fixed directions, and the octahedron.
+
+use super::points::Points;
+use super::volume::Volume;
+use crate::accel::cell::Shape;
+use crate::geometry::kdop::{DiagonalLine, Diagonals, Octahedron, box_planes};
+use crate::geometry::num::{round_down, round_up};
+use crate::geometry::polytope::area;
+use crate::geometry::{Aabb, Line, Slabs};
+use crate::task::Cancelled;
+use glam::Vec3;
+
+/// A box and `N` slabs of diagonals: k is 6 + 2N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Kdop<const FIRST: usize, const N: usize> {
+    bounds: Aabb,
+    slabs: Diagonals<FIRST, N>,
+}
+
+/// The slabs of the axes alone: a box, written as one more set of directions.
+pub type Kdop6 = Kdop<0, 0>;
+/// Its corners cut off.
+pub type Kdop14 = Kdop<0, 4>;
+/// Its edges cut off.
+pub type Kdop18 = Kdop<4, 6>;
+/// Both cut off.
+pub type Kdop26 = Kdop<0, 10>;
+
+impl<const FIRST: usize, const N: usize> Volume for Kdop<FIRST, N> {
+    const ID: &'static str = ["kdop6", "", "", "", "kdop14", "", "kdop18", "", "", "", "kdop26"][N];
+    type Shared = ();
+    type Fit = Self;
+    type Up = Diagonals<FIRST, N>;
+    type Ray = (Slabs, DiagonalLine<N>);
+
+    /// The slabs of a node are exactly those around its children's.
+    fn around(points: &Points<'_>, below: Option<[Self::Up; 2]>) -> Result<(Self, Self::Up), Cancelled> {
+        let slabs = diagonals(points, below)?;
+        Ok((Self { bounds: points.bounds, slabs }, slabs))
+    }
+
+    fn store(fit: Self, (): &mut ()) -> Self {
+        fit
+    }
+
+    fn ray(line: &Line) -> Self::Ray {
+        (line.slabs, Diagonals::<FIRST, N>::line(line))
+    }
+
+    /// All slabs say whether the line meets the volume, those of the axes where something may be hit.
+    #[inline(always)]
+    fn interval(&self, (): &(), (axes, diagonals): &Self::Ray) -> Option<(f32, f32)> {
+        let in_box = axes.interval(&self.bounds);
+        let (entry, exit) = self.slabs.cut(diagonals, in_box);
+        (entry <= exit).then_some(in_box)
+    }
+
+    fn shape(&self, (): &(), centre: Vec3) -> Shape {
+        if N == 0 {
+            return Shape::Box(self.bounds);
+        }
+        let mut planes = self.slabs.planes();
+        planes.extend(box_planes(&self.bounds, centre.as_dvec3()));
+        Shape::Convex { bounds: self.bounds, area: area(&planes, reach(&self.bounds, centre)) }
+    }
+}
+
+impl Volume for Octahedron {
+    const ID: &'static str = "kdop8";
+    type Shared = ();
+    type Fit = Self;
+    type Up = Self;
+    type Ray = (Line, DiagonalLine<4>);
+
+    fn around(points: &Points<'_>, below: Option<[Self; 2]>) -> Result<(Self, Self), Cancelled> {
+        diagonals(points, below).map(|slabs| (slabs, slabs))
+    }
+
+    fn store(fit: Self, (): &mut ()) -> Self {
+        fit
+    }
+
+    fn ray(line: &Line) -> Self::Ray {
+        (*line, Self::line(line))
+    }
+
+    #[inline(always)]
+    fn interval(&self, (): &(), (line, diagonals): &Self::Ray) -> Option<(f32, f32)> {
+        let (lo, hi) = self.along(line.axis);
+        let along = line.along(lo, hi);
+        let (entry, exit) = self.cut(diagonals, along);
+        (entry <= exit).then_some(along)
+    }
+
+    fn shape(&self, (): &(), centre: Vec3) -> Shape {
+        let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
+        for k in 0..3 {
+            let (lo, hi) = Self::along(self, k);
+            // The halves of 32-bit sums err by one rounding, the sums with the centre by another.
+            (min[k], max[k]) = (f64::from(lo.next_down()) + f64::from(centre[k]), f64::from(hi.next_up()) + f64::from(centre[k]));
+        }
+        let bounds = Aabb { min: min.map(round_down).into(), max: max.map(round_up).into() };
+        Shape::Convex { bounds, area: area(&self.planes(), reach(&bounds, centre)) }
+    }
+}
+
+fn diagonals<const FIRST: usize, const N: usize>(
+    points: &Points<'_>,
+    below: Option<[Diagonals<FIRST, N>; 2]>,
+) -> Result<Diagonals<FIRST, N>, Cancelled> {
+    if let Some([left, right]) = below {
+        return Ok(left.union(&right));
+    }
+    let mut slabs = Diagonals::EMPTY;
+    if N > 0 {
+        points.each(|p| slabs = slabs.with(p))?;
+    }
+    Ok(slabs)
+}
+
+/// How far a box reaches from `centre`.
+pub fn reach(bounds: &Aabb, centre: Vec3) -> f64 {
+    let (min, max) = (bounds.min.as_dvec3() - centre.as_dvec3(), bounds.max.as_dvec3() - centre.as_dvec3());
+    min.abs().max(max.abs()).length().max(f64::MIN_POSITIVE)
+}
