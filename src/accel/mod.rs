@@ -7,6 +7,7 @@
 
 mod best;
 mod brute;
+mod bsp;
 mod build;
 mod bvh;
 pub mod cell;

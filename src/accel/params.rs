@@ -207,6 +207,15 @@ pub const C_TRAV: Param = Param {
     kind: Kind::Float { min: 0.01, max: 100.0, default: 1.0 },
 };
 
+/// C_plane, for structures with planes of any direction beside those perpendicular to the axes.
+pub const C_PLANE: Param = Param {
+    id: "c_plane",
+    label: "C_plane",
+    help: "Cost of stepping over a plane that is not perpendicular to an axis, in the same unit as C_trav.",
+    unit: "",
+    kind: Kind::Float { min: 0.01, max: 100.0, default: 2.0 },
+};
+
 /// C_isect, the same for every structure that weighs costs.
 pub const C_ISECT: Param = Param {
     id: "c_isect",

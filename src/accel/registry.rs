@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::params::{Param, ParamValues};
-use super::{Accel, BuildCx, BuildError, brute, bvh, grid, kdtree, octree, volumes};
+use super::{Accel, BuildCx, BuildError, brute, bsp, bvh, grid, kdtree, octree, volumes};
 use crate::geometry::tri::{Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 
@@ -142,6 +142,15 @@ pub const ALL: &[Entry] = &[
         params: octree::PARAMS,
         watertight: octree::build::<Watertight>,
         fast: octree::build::<Fast>,
+    },
+    Entry {
+        id: "bsp",
+        name: "BSP",
+        family: Family::Bsp,
+        help: "Binary space partition: space divided by planes of any direction, along the faces and edges of the triangles.",
+        params: bsp::PARAMS,
+        watertight: bsp::build::<Watertight>,
+        fast: bsp::build::<Fast>,
     },
 ];
 
