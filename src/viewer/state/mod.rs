@@ -1,5 +1,5 @@
-//! What the window knows, and how commands change it; [`finished`] is what finished jobs change, and
-//! [`refresh`] what is asked for anew when the view changes. No drawing here.
+//! What the window knows, and how commands change it; `finished` is what finished jobs change, and
+//! `refresh` what is asked for anew when the view changes. No drawing here.
 
 mod finished;
 mod refresh;
