@@ -3,7 +3,9 @@
 //! (Kalojanov, Billeter and Slusallek 2011, §3).
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicU32;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
 
 use super::contents::{Contents, Overlapped, Refusal, counts};
 use super::lattice::Lattice;
@@ -26,7 +28,7 @@ pub struct Densities {
 const REFUSAL: Refusal = Refusal { structure: "grid2", remedy: "Lower the densities, or raise the memory budget." };
 
 /// Coarse cells cut between two looks at the cancel flag.
-const CHUNK: usize = 1 << 16;
+const CHUNK: usize = 1 << 14;
 
 /// Builds a two-level grid.
 ///
@@ -49,16 +51,21 @@ pub fn build(geometry: &Arc<Geometry>, densities: Densities, cx: &BuildCx) -> Re
 
 /// Cuts each cell of the coarse grid, and says how many cells that makes.
 fn cut(lattice: Lattice, counts: Vec<AtomicU32>, density: f64, cx: &BuildCx) -> Result<(Cuts, usize), BuildError> {
-    let mut tops = Vec::with_capacity(counts.len());
-    let mut cells = 0u64;
-    for (i, count) in counts.into_iter().enumerate() {
-        if i.is_multiple_of(CHUNK) {
-            cx.cancel.check()?;
+    let mut tops = vec![Top { first: 0, resolution: [1; 3] }; counts.len()];
+    let settle = |(tops, counts): (&mut [Top], &[AtomicU32])| {
+        for (top, count) in tops.iter_mut().zip(counts) {
+            top.resolution = lattice.resolution_within(count.load(Ordering::Relaxed), density);
         }
-        let first = num::index(REFUSAL.numbered(cells, "cells")?);
-        let top = Top { first, resolution: lattice.resolution_within(count.into_inner(), density) };
-        cells += u64::from(top.cells());
-        tops.push(top);
+        cx.cancel.check()
+    };
+    cx.pool.run(|| tops.par_chunks_mut(CHUNK).zip(counts.par_chunks(CHUNK)).try_for_each(settle))?;
+    let mut cells = 0u64;
+    for chunk in tops.chunks_mut(CHUNK) {
+        cx.cancel.check()?;
+        for top in chunk {
+            top.first = num::index(REFUSAL.numbered(cells, "cells")?);
+            cells += u64::from(top.cells());
+        }
     }
     // Every cell of either level has a number in walks, the root one more.
     let numbered = REFUSAL.numbered(cells + tops.len() as u64 + 1, "cells")?;

@@ -56,10 +56,10 @@ impl Division {
         } else {
             refs.par_chunks(CHUNK).map(chunk).collect::<Result<Vec<_>, _>>()?.concat()
         };
-        let mut counts = [0; 8];
-        for set in &sets {
-            (0..8).for_each(|octant| counts[octant] += usize::from(set >> octant & 1));
-        }
+        let mut of_set = [0usize; 256];
+        sets.iter().for_each(|set| of_set[usize::from(*set)] += 1);
+        let counts =
+            [0, 1, 2, 3, 4, 5, 6, 7].map(|octant| (0..256).filter(|set| set >> octant & 1 == 1).map(|set| of_set[set]).sum());
         let filled = (0..8).filter(|octant| counts[*octant] > 0).fold(0, |filled, octant| filled | 1 << octant);
         Ok(Self { octants: Octants { filled, axes }, sets, counts, cells })
     }
