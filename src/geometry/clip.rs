@@ -64,13 +64,12 @@ impl Clipped {
         for (to, from) in part.corners.iter_mut().zip(tri) {
             *to = corner(*from);
         }
-        for k in 0..3 {
-            // A plane that the triangle does not cross cuts nothing off, or all of it: see `bounds`.
+        for (k, slack) in slack.into_iter().enumerate() {
             if around.min[k] < cell.min[k] {
-                part.cut(k, f64::from(cell.min[k]) - slack[k], false);
+                part.cut(k, f64::from(cell.min[k]) - slack, false);
             }
             if around.max[k] > cell.max[k] {
-                part.cut(k, f64::from(cell.max[k]) + slack[k], true);
+                part.cut(k, f64::from(cell.max[k]) + slack, true);
             }
         }
         part
@@ -156,8 +155,8 @@ impl Extent {
 
     #[inline(always)]
     fn take(&mut self, corner: &Corner, slack: &[f64; 3]) {
-        for j in 0..3 {
-            let around = if corner.exact[j] { 0.0 } else { slack[j] };
+        for (j, slack) in slack.iter().enumerate() {
+            let around = if corner.exact[j] { 0.0 } else { *slack };
             self.min[j] = self.min[j].min(corner.at[j] - around);
             self.max[j] = self.max[j].max(corner.at[j] + around);
         }
