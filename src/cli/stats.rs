@@ -159,7 +159,11 @@ fn histograms(built: &BuiltFacts) -> String {
     let phases = built.phases.iter().map(|phase| format!("{} {}", phase.name, duration(phase.secs))).collect::<Vec<_>>();
     let memory = built.memory.iter().map(|part| format!("{} {}", part.name, bytes(part.bytes))).collect::<Vec<_>>();
     let or_missing = |list: Vec<String>| if list.is_empty() { MISSING.to_owned() } else { list.join(", ") };
-    format!("\n{sizes}\n{depths}\n{}", facts(&[("build", or_missing(phases)), ("memory", or_missing(memory))]))
+    let mut lines = vec![("build", or_missing(phases)), ("memory", or_missing(memory))];
+    if !built.remarks.is_empty() {
+        lines.push(("chosen", built.remarks.join(", ")));
+    }
+    format!("\n{sizes}\n{depths}\n{}", facts(&lines))
 }
 
 /// A line for each count that is not 0.

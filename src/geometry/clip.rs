@@ -65,7 +65,6 @@ impl Clipped {
             *to = corner(*from);
         }
         for (k, slack) in slack.into_iter().enumerate() {
-            // A plane that the triangle does not cross cuts nothing off, or all of it: see `bounds`.
             if around.min[k] < cell.min[k] {
                 part.cut(k, f64::from(cell.min[k]) - slack, false);
             }

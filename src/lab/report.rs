@@ -96,6 +96,8 @@ pub struct BuiltFacts {
     pub leaf_sizes: Vec<u64>,
     /// Leaves at each depth.
     pub leaf_depths: Vec<u64>,
+    /// What the builder decided, in words.
+    pub remarks: Vec<String>,
 }
 
 impl BuiltFacts {
@@ -114,6 +116,7 @@ impl BuiltFacts {
             sah: stats.sah,
             leaf_sizes: stats.leaf_sizes,
             leaf_depths: stats.leaf_depths,
+            remarks: row.accel.remarks(),
         }
     }
 }

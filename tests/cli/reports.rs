@@ -44,6 +44,8 @@ fn stats_follows_the_schema() {
     }
     let bvh = &report["structures"][2];
     assert_eq!((&bvh["params"]["max_leaf"], &bvh["references"]), (&json!(2), &json!(12)));
+    let remark = report["structures"][3]["remarks"][0].as_str().expect("what auto chose");
+    assert!(remark.contains("builder sah"), "{remark}");
     assert_eq!(folder.names(), ["Würfel.ply"]);
 }
 
@@ -53,6 +55,8 @@ fn stats_prints_a_table() {
     for word in ["build ms", "SAH cost", "bvh", "fast", "references", "depth", "cores"] {
         assert!(table.contains(word), "{word} is not in\n{table}");
     }
+    let table = good(&["stats", "builtin:cornell-box", "--structure", "kdtree"]);
+    assert!(table.contains("chosen  builder sah"), "{table}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The search for a plane among few: equal bins along each axis count where boxes begin and where
-//! they end, and the planes between bins are tried (Hunt, Mark and Stoll 2006; Danilewski, Popov and
-//! Slusallek 2010, min-max binning). One pass over the boxes, no order needed.
+//! they end, and the planes between bins are tried (Popov et al. 2006; Hunt, Mark and Stoll 2006;
+//! counting both ends: Shevtsov, Soupikov and Kapustin 2007, "Highly Parallel Fast KD-tree
+//! Construction"; Danilewski, Popov and Slusallek 2010). One pass over the boxes, no order needed.
 
 use rayon::prelude::*;
 

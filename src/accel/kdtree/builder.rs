@@ -3,7 +3,7 @@
 //!
 //! Planes are searched for exactly, over events that are sorted once and kept in order while cells
 //! are divided, in O(N log N) (Wald and Havran 2006, §4.3); or by bins down to cells of [`Search`]'s
-//! size. Large cells fork onto the pool, and their own work is done in parallel portions; a subtree
+//! size. Large cells fork onto the pool, and their own work is done in parallel portions (`large`); a subtree
 //! below [`FORK`] references is built by one thread into a list of its own (`serial`), and the lists
 //! are joined at the end. So nothing is shared while building, and the tree does not depend on the
 //! number of threads.
@@ -15,18 +15,17 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::costs::{Costs, Plane};
-use super::deal::{Dealer, Dealt, HIGH, KdRef, LOW, Moved, Side, keep, merge};
-use super::events::{self, Event, Lists, MAX_REFS};
+use super::deal::KdRef;
+use super::events::{Event, MAX_REFS};
+use super::large::Part;
 use super::serial::Bench;
 use super::tree::{Built, KdNode, MAX_COUNT, MAX_DEPTH};
-use super::{bins, sort, sweep};
+use super::{bins, sweep};
 use crate::accel::{BuildCx, BuildError};
 use crate::geometry::{Aabb, num};
 use crate::scene::{Geometry, PrimRef};
-use crate::task::{Charge, OverBudget};
+use crate::task::{Cancel, Charge, OverBudget};
 
 /// When to stop.
 #[derive(Clone, Copy, Debug)]
@@ -52,9 +51,7 @@ pub enum Search {
 }
 
 /// References below which a subtree is built by one thread.
-const FORK: usize = 4096;
-/// References, or events, handled between two looks at the cancel flag.
-const CHUNK: usize = 1 << 14;
+pub const FORK: usize = 4096;
 /// Planes in a row that may cost more than a leaf.
 const BAD_REFINES: u32 = 3;
 
@@ -96,7 +93,7 @@ pub fn build(
     let work = Work { cell: *geometry.bounds(), depth: 0, bad: 0, share: n as f64 };
     let tree = cx.pool.run(|| builder.subtree(work, all))?;
     cx.progress.start("join", 0);
-    let (nodes, refs) = join(tree)?;
+    let (nodes, refs) = join(tree, &cx.cancel)?;
     let bytes = (nodes.capacity() * size_of::<KdNode>() + refs.capacity() * size_of::<PrimRef>()) as u64;
     let charge = cx.budget.charge(bytes).map_err(too_large)?;
     Ok(Built { geometry: Arc::clone(geometry), nodes, refs, remarks, _charge: charge })
@@ -128,13 +125,6 @@ pub struct Work {
     share: f64,
 }
 
-/// The references of a cell, their events where they are kept, and the memory of both.
-struct Part {
-    refs: Vec<KdRef>,
-    lists: Option<Lists>,
-    charge: Charge,
-}
-
 /// What every step of a build needs.
 pub struct Builder<'a> {
     /// What it is built over.
@@ -143,7 +133,8 @@ pub struct Builder<'a> {
     search: Search,
     max_leaf: usize,
     max_depth: u32,
-    cx: &'a BuildCx,
+    /// Cancel, progress, pool and budget.
+    pub cx: &'a BuildCx,
 }
 
 impl Builder<'_> {
@@ -155,40 +146,8 @@ impl Builder<'_> {
         }
     }
 
-    fn everything(&self) -> Result<Part, BuildError> {
-        let (n, cx) = (self.geometry.live_count(), self.cx);
-        let mut charge = self.charge(0)?;
-        charge.grow((2 * n * size_of::<KdRef>()) as u64).map_err(too_large)?;
-        let reference = |i| {
-            let prim = self.geometry.live(i);
-            KdRef { bounds: Aabb::of_triangle(&self.geometry.corners(prim)), prim }
-        };
-        let chunk = |c: usize| cx.cancel.check().map(|()| (c * CHUNK..n.min((c + 1) * CHUNK)).map(reference).collect::<Vec<_>>());
-        let chunks: Result<Vec<_>, _> = cx.pool.run(|| (0..n.div_ceil(CHUNK)).into_par_iter().map(chunk).collect());
-        let refs = chunks?.concat();
-        if n < FORK || !self.is_exact(n) {
-            return Ok(Part { refs, lists: None, charge });
-        }
-        cx.progress.start("sort", 0);
-        charge.grow((3 * 2 * 2 * n * size_of::<Event>()) as u64).map_err(too_large)?;
-        let lists = cx.pool.run(|| self.sorted(&refs))?;
-        Ok(Part { refs, lists: Some(lists), charge })
-    }
-
-    /// The events of all axes, in order.
-    fn sorted(&self, refs: &[KdRef]) -> Result<Lists, BuildError> {
-        let events = |(c, refs): (usize, &[KdRef])| {
-            let mut lists = Lists::default();
-            refs.iter().enumerate().for_each(|(i, r)| events::append(&mut lists, &r.bounds, num::index(c * CHUNK + i)));
-            self.cx.cancel.check().map(|()| lists)
-        };
-        let chunks: Vec<Lists> = refs.par_chunks(CHUNK).enumerate().map(events).collect::<Result<_, _>>()?;
-        let axis = |k: usize| sort::sort(chunks.iter().flat_map(|lists| &lists[k]).copied().collect(), &self.cx.cancel);
-        let (x, (y, z)) = rayon::join(|| axis(0), || rayon::join(|| axis(1), || axis(2)));
-        Ok([x?, y?, z?])
-    }
-
-    fn charge(&self, bytes: usize) -> Result<Charge, BuildError> {
+    /// Takes memory for as long as the charge is held.
+    pub fn charge(&self, bytes: usize) -> Result<Charge, BuildError> {
         self.cx.budget.charge(bytes as u64).map_err(too_large)
     }
 
@@ -206,7 +165,7 @@ impl Builder<'_> {
             self.leaf(&mut list, &work, &part.refs)?;
             return Ok(Subtree::List(list));
         };
-        let (below, above) = self.deal(&work, part, &plane)?;
+        let (below, above) = self.deal_large(&work, part, &plane)?;
         let (low, high) = self.sides(&work, &plane, bad);
         let (low, high) = rayon::join(|| self.subtree(low, below), || self.subtree(high, above));
         Ok(Subtree::Fork(plane, Box::new((low?, high?))))
@@ -237,53 +196,6 @@ impl Builder<'_> {
         (side(low), side(high))
     }
 
-    /// What each side of a large cell gets, worked out in parallel portions.
-    fn deal(&self, work: &Work, part: Part, plane: &Plane) -> Result<(Part, Part), BuildError> {
-        let dealer = Dealer { geometry: self.geometry, cell: work.cell, plane: *plane, events: part.lists.is_some() };
-        let chunk = |refs: &[KdRef]| {
-            let mut dealt = Dealt::default();
-            dealt.deal(refs, &dealer);
-            self.cx.cancel.check().map(|()| dealt)
-        };
-        let chunks: Vec<Dealt> = part.refs.par_chunks(CHUNK).map(chunk).collect::<Result<_, _>>()?;
-        let mut dealt = chunks.into_iter().reduce(|mut all, more| (all.append(more), all).1).unwrap_or_default();
-        let (low, high) = (std::mem::take(&mut dealt.low), std::mem::take(&mut dealt.high));
-        let lists = part.lists.as_ref();
-        let side = |side: Side, bit| self.side(side, lists, &dealt.moved, bit);
-        let (low, high) = rayon::join(|| side(low, LOW), || side(high, HIGH));
-        Ok((low?, high?))
-    }
-
-    /// One side's part: its references, and of the cell's events those that it keeps.
-    fn side(&self, side: Side, lists: Option<&Lists>, moved: &[Moved], bit: u32) -> Result<Part, BuildError> {
-        let events = if lists.is_some() { 6 * side.refs.len() * size_of::<Event>() } else { 0 };
-        let charge = self.charge(side.refs.len() * size_of::<KdRef>() + events)?;
-        let Some([x, y, z]) = lists else { return Ok(Part { refs: side.refs, lists: None, charge }) };
-        let [fresh_x, fresh_y, fresh_z] = side.fresh;
-        let axis = |events, fresh| self.keep_sorted(events, fresh, moved, bit);
-        let (x, (y, z)) = rayon::join(|| axis(x, fresh_x), || rayon::join(|| axis(y, fresh_y), || axis(z, fresh_z)));
-        Ok(Part { refs: side.refs, lists: Some([x?, y?, z?]), charge })
-    }
-
-    /// Keeps and merges in chunks of the cell's events; the fresh ones go where they belong.
-    fn keep_sorted(&self, events: &[Event], fresh: Vec<Event>, moved: &[Moved], bit: u32) -> Result<Vec<Event>, BuildError> {
-        let fresh = sort::sort(fresh, &self.cx.cancel)?;
-        let chunk = |(c, own): (usize, &[Event])| {
-            // The kept events are renamed, so fresh ones are divided by place and kind alone.
-            let place = |i: usize| events.get(i).map(|e| e.renamed(0));
-            let from = if c == 0 { 0 } else { place(c * CHUNK).map_or(0, |at| fresh.partition_point(|e| *e < at)) };
-            let to = place((c + 1) * CHUNK).map_or(fresh.len(), |at| fresh.partition_point(|e| *e < at));
-            let mut mine = fresh[from..to].to_vec();
-            let mut out = vec![Event::default(); own.len() + mine.len()];
-            let kept = keep(own, moved, bit, &mut out);
-            let n = merge(&mut out, kept, &mut mine);
-            out.truncate(n);
-            self.cx.cancel.check().map(|()| out)
-        };
-        let chunks: Vec<Vec<Event>> = events.par_chunks(CHUNK).enumerate().map(chunk).collect::<Result<_, _>>()?;
-        Ok(if chunks.len() == 1 { chunks.into_iter().flatten().collect() } else { chunks.concat() })
-    }
-
     /// Appends a leaf.
     pub fn leaf(&self, list: &mut List, work: &Work, refs: &[KdRef]) -> Result<(), BuildError> {
         // A leaf, the division above it, and the references.
@@ -297,8 +209,9 @@ impl Builder<'_> {
         Ok(())
     }
 }
+
 /// Copies the forks and lists into one, the child below a plane right after its parent.
-fn join(tree: Subtree) -> Result<(Vec<KdNode>, Vec<PrimRef>), BuildError> {
+fn join(tree: Subtree, cancel: &Cancel) -> Result<(Vec<KdNode>, Vec<PrimRef>), BuildError> {
     enum Step {
         Visit(Subtree),
         Above(usize, Plane),
@@ -315,6 +228,7 @@ fn join(tree: Subtree) -> Result<(Vec<KdNode>, Vec<PrimRef>), BuildError> {
             }
             Step::Above(at, plane) => nodes[at] = KdNode::inner(plane.axis, plane.pos, num::index(nodes.len())),
             Step::Visit(Subtree::List(list)) => {
+                cancel.check()?;
                 if nodes.len() + list.nodes.len() > MAX_COUNT {
                     return Err(too_many("nodes"));
                 }

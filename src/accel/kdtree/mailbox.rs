@@ -1,8 +1,9 @@
 //! Which triangles a ray was tested against lately, so that one in several cells is not tested again.
 //!
 //! Mailboxes at the triangles (Amanatides and Woo 1987) are written by every ray, which threads
-//! cannot share. The inverse mailbox (Shevtsov, Soupikov and Kapustin 2007) is the ray's own: the
-//! last few triangles, in a ring. It forgets, so some tests are repeated; none is left out.
+//! cannot share. The inverse mailbox (Shevtsov, Soupikov and Kapustin 2007, "Ray-Triangle
+//! Intersection Algorithm for Modern CPU Architectures") is the ray's own: the last few triangles,
+//! in a ring. It forgets, so some tests are repeated; none is left out.
 
 use crate::scene::PrimRef;
 

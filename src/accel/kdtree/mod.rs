@@ -2,7 +2,7 @@
 //! heuristic; a triangle is in every leaf it overlaps.
 //!
 //! [`tree`] holds the nodes and the traversal, [`mailbox`] what a ray remembers on its way;
-//! [`builder`] the loop, [`serial`] its small subtrees; [`costs`] weighs a plane, [`sweep`] finds the
+//! [`builder`] the loop, [`large`] and [`serial`] its large cells and small subtrees; [`costs`] weighs a plane, [`sweep`] finds the
 //! best of all over sorted [`events`], [`bins`] the best of few; [`deal`] gives each side its
 //! triangles, clipped.
 
@@ -11,6 +11,7 @@ mod builder;
 mod costs;
 mod deal;
 mod events;
+mod large;
 mod mailbox;
 mod serial;
 mod sort;

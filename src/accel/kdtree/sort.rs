@@ -10,8 +10,9 @@ use crate::task::{Cancel, Cancelled};
 /// Events in a chunk, and about as many in a bucket.
 const CHUNK: usize = 1 << 16;
 
-/// Sorts events that are all different.
-pub fn sort(mut events: Vec<Event>, cancel: &Cancel) -> Result<Vec<Event>, Cancelled> {
+/// Sorts events that are all different, given in any number of lists.
+pub fn sort(lists: Vec<Vec<Event>>, cancel: &Cancel) -> Result<Vec<Event>, Cancelled> {
+    let mut events = gather(lists, cancel)?;
     let sort_chunk = |chunk: &mut [Event]| cancel.check().map(|()| chunk.sort_unstable());
     events.par_chunks_mut(CHUNK).try_for_each(sort_chunk)?;
     if events.len() <= CHUNK {
@@ -33,8 +34,20 @@ pub fn sort(mut events: Vec<Event>, cancel: &Cancel) -> Result<Vec<Event>, Cance
         Ok(all)
     };
     let buckets: Vec<Vec<Event>> = (0..=bounds.len()).into_par_iter().map(bucket).collect::<Result<_, _>>()?;
-    cancel.check()?;
-    Ok(buckets.concat())
+    gather(buckets, cancel)
+}
+
+/// All lists in one, with a look at the cancel flag before each.
+pub fn gather<T>(mut lists: Vec<Vec<T>>, cancel: &Cancel) -> Result<Vec<T>, Cancelled> {
+    if lists.len() == 1 {
+        return Ok(lists.pop().unwrap_or_default());
+    }
+    let mut all = Vec::with_capacity(lists.iter().map(Vec::len).sum());
+    for list in lists {
+        cancel.check()?;
+        all.extend(list);
+    }
+    Ok(all)
 }
 
 /// Where buckets end: as many samples from each chunk as there are chunks, every so many of them. No
@@ -60,10 +73,11 @@ mod tests {
             let events: Vec<Event> = (0..n).map(event).collect();
             let mut expected = events.clone();
             expected.sort_unstable();
-            assert_eq!(sort(events, &Cancel::new()), Ok(expected));
+            let lists = events.chunks(4000).map(<[Event]>::to_vec).collect();
+            assert_eq!(sort(lists, &Cancel::new()), Ok(expected));
         }
         let stop = Cancel::new();
         stop.cancel();
-        assert!(sort(vec![Event::default()], &stop).is_err());
+        assert!(sort(vec![vec![Event::default()]], &stop).is_err());
     }
 }
