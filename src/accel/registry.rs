@@ -35,6 +35,8 @@ pub struct Entry {
     pub id: &'static str,
     /// The name in the window.
     pub name: &'static str,
+    /// The name where there is little room.
+    pub short: &'static str,
     /// Its kind.
     pub family: Family,
     /// One sentence that explains it.
@@ -74,6 +76,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "brute",
         name: "Brute force",
+        short: "Brute",
         family: Family::Brute,
         help: "No structure: every ray is tested against every triangle.",
         params: &[],
@@ -83,6 +86,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "bound",
         name: "Bounding box",
+        short: "Box",
         family: Family::Brute,
         help: "Brute force behind one box: rays that miss the box test nothing.",
         params: &[],
@@ -92,6 +96,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "bvh",
         name: "BVH",
+        short: "BVH",
         family: Family::Bvh,
         help: "Bounding volume hierarchy: a binary tree of boxes, split by the binned surface area heuristic.",
         params: bvh::PARAMS,
@@ -101,6 +106,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "volumes",
         name: "Bounding volumes",
+        short: "Volumes",
         family: Family::Bvh,
         help: "The tree of the BVH with spheres, turned boxes, k-DOPs or convex hulls around its nodes: tightness against cost.",
         params: volumes::PARAMS,
@@ -110,6 +116,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "kdtree",
         name: "k-d tree",
+        short: "k-d",
         family: Family::KdTree,
         help: "Space divided by axis-parallel planes; a ray visits the cells front to back and stops at the first hit.",
         params: kdtree::PARAMS,
@@ -119,6 +126,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "grid",
         name: "Grid",
+        short: "Grid",
         family: Family::Grid,
         help: "Space cut into equal cells; a ray steps from cell to cell.",
         params: grid::PARAMS,
@@ -128,6 +136,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "grid2",
         name: "Two-level grid",
+        short: "Grid 2",
         family: Family::Grid,
         help: "A coarse grid whose cells are cut into grids of their own, finer where there is more.",
         params: grid::TWO_LEVEL_PARAMS,
@@ -137,6 +146,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "octree",
         name: "Octree",
+        short: "Octree",
         family: Family::Octree,
         help: "Space divided in the middle on every axis, again and again where there are triangles.",
         params: octree::PARAMS,
@@ -146,6 +156,7 @@ pub const ALL: &[Entry] = &[
     Entry {
         id: "bsp",
         name: "BSP",
+        short: "BSP",
         family: Family::Bsp,
         help: "Binary space partition: space divided by planes of any direction, along the faces and edges of the triangles.",
         params: bsp::PARAMS,

@@ -35,7 +35,7 @@ const SLACK: f32 = 1.0;
 
 /// Text that is never scrolled away.
 const ALWAYS: [&str; 12] =
-    ["File", "View", "Window", "Help", "SCENE", "TIMINGS", "Measure", "BVH", "k-d tree", "Grid", "Brute force", "Shaded"];
+    ["File", "View", "Window", "Help", "SCENE", "TIMINGS", "Measure", "BVH", "k-d", "Grid", "Brute", "Shaded"];
 
 fn open(case: &Case, options: impl FnOnce(&mut Setup)) -> Window {
     let mut setup = Setup { size: case.size, pixels_per_point: case.pixels_per_point, ..Setup::default() };

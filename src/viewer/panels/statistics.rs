@@ -38,6 +38,9 @@ fn build_time(ui: &mut Ui, built: &Built) {
     let phases: Vec<String> = built.phases.iter().map(|p| format!("{}: {}", p.name, format::duration(p.secs))).collect();
     let help = format!("Wall-clock time of the build. {}", phases.join(", "));
     fact(ui, "Build", format::duration(built.build_secs), &help);
+    for remark in built.accel.remarks() {
+        ui.label(RichText::new(remark).small().color(Palette::in_ui(ui).dim));
+    }
 }
 
 fn figures(ui: &mut Ui, stats: &Stats, triangles: usize) {

@@ -24,8 +24,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
 fn structure(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let chosen = state.settings.entry();
     for entry in registry::ALL {
-        let tab = ui.selectable_label(entry.id == chosen.id, entry.name).on_hover_text(entry.help);
-        if tab.clicked() {
+        let tab = ui.selectable_label(entry.id == chosen.id, entry.short).accessible_name(entry.name);
+        if tab.on_hover_text(format!("{}. {}", entry.name, entry.help)).clicked() {
             commands.push(Command::Structure(entry.id));
         }
     }
