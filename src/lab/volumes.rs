@@ -251,16 +251,13 @@ fn time_tests(
             ns[k].push(start.elapsed().as_secs_f64() * 1e9 / pairs[k].len() as f64);
         }
     }
-    let row = |((ns, met), pairs): ((&Vec<f64>, usize), &&[(u32, u32)])| {
-        let none = pairs.is_empty();
-        TestTime {
-            median: if none { f64::NAN } else { median(ns) },
-            spread: if none { f64::NAN } else { half_iqr(ns) },
-            tests: pairs.len(),
-            met: met as f64 / pairs.len() as f64,
-        }
+    let row = |k: usize| {
+        let tests = pairs[k].len();
+        // Of no samples neither is a number.
+        let samples = if tests == 0 { &[] } else { &ns[k][..] };
+        TestTime { median: median(samples), spread: half_iqr(samples), tests, met: met[k] as f64 / tests as f64 }
     };
-    Ok(ns.iter().zip(met).zip(pairs).map(row).collect())
+    Ok((0..runs.len()).map(row).collect())
 }
 
 #[cfg(test)]

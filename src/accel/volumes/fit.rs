@@ -17,6 +17,9 @@ const _: () = assert!(MAX_DEPTH == 64, "the depth that bounds the work");
 /// A node to be fitted and what its children handed up.
 type Job<V> = (u32, Option<[<V as Volume>::Up; 2]>);
 
+/// A node, its fit, and what that hands up.
+type Done<V> = (u32, <V as Volume>::Fit, <V as Volume>::Up);
+
 /// The fits of all nodes, in their order. `boxes` says what a volume must hold (see [`Points`]).
 pub fn fit<V: Volume>(built: &Built, boxes: bool, cx: &BuildCx) -> Result<Vec<V::Fit>, BuildError> {
     let nodes = &built.nodes;
@@ -44,8 +47,7 @@ pub fn fit<V: Volume>(built: &Built, boxes: bool, cx: &BuildCx) -> Result<Vec<V:
                 (*node, left.and_then(|left| Some([take(left)?, take(left + 1)?])))
             })
             .collect();
-        let done: Result<Vec<(u32, V::Fit, V::Up)>, Cancelled> =
-            cx.pool.run(|| jobs.into_par_iter().with_max_len(64).map(fit_one).collect());
+        let done: Result<Vec<Done<V>>, Cancelled> = cx.pool.run(|| jobs.into_par_iter().with_max_len(64).map(fit_one).collect());
         for (node, fit, up) in done? {
             fits[node as usize] = Some(fit);
             ups[node as usize] = Some(up);

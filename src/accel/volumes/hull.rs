@@ -71,7 +71,7 @@ impl Volume for Hull {
     /// Only the directions of the faces come from the hull of the points; how far each face reaches
     /// comes from all points. So whatever the quickhull did, the volume holds them all.
     fn around(points: &Points<'_>, below: Option<[Vec<DVec3>; 2]>) -> Result<(Fitted, Vec<DVec3>), Cancelled> {
-        let few = points.to_fit(below)?;
+        let few = points.for_choosing(below)?;
         points.cancel.check()?;
         let made = hull(&few, TOLERANCE);
         let (normals, loose) = chosen(made.as_ref());
