@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn extremes_are_few_and_outermost() {
         let points: Vec<DVec3> =
-            (0..1000).map(|i| f64::from(i)).map(|i| DVec3::new(i.sin(), (i * 1.3).sin(), (i * 1.7).sin())).collect();
+            (0..1000).map(f64::from).map(|i| DVec3::new(i.sin(), (i * 1.3).sin(), (i * 1.7).sin())).collect();
         let few = extremes(&points);
         let reach = |list: &[DVec3], n: DVec3| list.iter().map(|p| p.dot(n)).fold(f64::MIN, f64::max);
         assert!(few.len() <= 26 && directions().count() == 26);

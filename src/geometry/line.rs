@@ -149,9 +149,9 @@ mod tests {
     fn slabs_of_any_direction_hold_what_lies_between_their_planes() {
         let line = Line::new(&Ray::new(Vec3::new(-2.0, 1.0, 1.0), Vec3::X), &BOUNDS);
         let (entry, exit) = line.through(Vec3::new(1.0, 1.0, 0.0), 2.0).interval(-0.25, 0.25);
-        assert!(entry <= 2.75 && entry > 2.7499 && exit >= 3.25 && exit < 3.2501, "{entry} {exit}");
+        assert!((2.7499..=2.75).contains(&entry) && (3.25..3.2501).contains(&exit), "{entry} {exit}");
         let (entry, exit) = line.in_box(Vec3::splat(-0.5), Vec3::splat(0.5));
-        assert!(entry <= 2.5 && exit >= 3.5 && exit < 3.501);
+        assert!(entry <= 2.5 && (3.5..3.501).contains(&exit));
     }
 
     #[test]

@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn no_ball_about_another_centre_is_smaller() {
         let points: Vec<DVec3> = (0..200)
-            .map(|i| f64::from(i))
+            .map(f64::from)
             .map(|i| DVec3::new((i * 1.7).sin(), (i * 2.3).cos() * 0.5, (i * 0.9).sin() * i / 300.0))
             .collect();
         let (centre, radius) = smallest_ball(&points).expect("points");

@@ -90,6 +90,10 @@ impl Volume for Hull {
         Self { bounds: fit.bounds, first, count, area: fit.area }
     }
 
+    fn fit_bytes(fit: &Fitted) -> u64 {
+        size_of_val(&fit.faces[..]) as u64
+    }
+
     fn ray(line: &Line) -> Line {
         *line
     }
