@@ -109,16 +109,15 @@ impl<const FIRST: usize, const N: usize> Diagonals<FIRST, N> {
 pub type Octahedron = Diagonals<0, 4>;
 
 impl Octahedron {
-    /// The least and greatest coordinate on an axis. Twice a coordinate is the sum of two
-    /// diagonals, and the difference of the other two: whichever is tighter.
+    /// The box around it, rounded. Twice a coordinate is the sum of two diagonals, and the
+    /// difference of the other two: whichever is tighter.
     #[inline(always)]
-    pub fn along(&self, axis: usize) -> (f32, f32) {
-        let (lo, hi) = (&self.lo, &self.hi);
+    pub fn rounded_box(&self) -> (Vec3, Vec3) {
+        let ([a, b, c, d], [e, f, g, h]) = (self.lo, self.hi);
         // x = (d1 + d2) / 2 = (d0 - d3) / 2, y = (d1 + d3) / 2 = (d0 - d2) / 2, z likewise.
-        let (i, j, k) = [(1, 2, 3), (1, 3, 2), (2, 3, 1)][axis];
-        let least = (lo[i] + lo[j]).max(lo[0] - hi[k]);
-        let greatest = (hi[i] + hi[j]).min(hi[0] - lo[k]);
-        (0.5 * least, 0.5 * greatest)
+        let min = Vec3::new(b + c, b + d, c + d).max(Vec3::new(a - h, a - g, a - f));
+        let max = Vec3::new(f + g, f + h, g + h).min(Vec3::new(e - d, e - c, e - b));
+        (0.5 * min, 0.5 * max)
     }
 }
 
@@ -161,11 +160,11 @@ mod tests {
         let points = [DVec3::new(0.1, 0.2, 0.3), DVec3::new(-0.4, 0.1, 0.0), DVec3::new(0.2, -0.3, 0.5)];
         let volume = points.into_iter().fold(Octahedron::EMPTY, Octahedron::with);
         for k in 0..3 {
-            let (lo, hi) = volume.along(k);
-            assert!(points.iter().all(|p| f64::from(lo) <= p[k] + 1e-7 && p[k] <= f64::from(hi) + 1e-7));
+            let (min, max) = volume.rounded_box();
+            assert!(points.iter().all(|p| f64::from(min[k]) <= p[k] + 1e-7 && p[k] <= f64::from(max[k]) + 1e-7));
         }
         let tip = Octahedron::EMPTY.with(DVec3::X).with(-DVec3::X).with(DVec3::Y).with(-DVec3::Y).with(DVec3::Z).with(-DVec3::Z);
-        assert!((tip.along(1).1 - 1.0).abs() < 1e-6, "a true octahedron reaches to its corners");
+        assert!((tip.rounded_box().1.y - 1.0).abs() < 1e-6, "a true octahedron reaches to its corners");
     }
 
     #[test]

@@ -11,8 +11,8 @@
 //!    12uD + 2u|o| plus four roundings ([`Slabs`]): less than E. So volumes that are traced with
 //!    `Fast` must be made around the boxes of the triangles.
 //! 3. The t of a hit is clamped into the ray's interval in the triangle's box; nothing more is
-//!    known of it, since in the plane of a triangle t is noise for either test. So only the boxes,
-//!    or one pair of their planes, bound t ([`Slabs`], [`Line::along`]); the rest of a volume
+//!    known of it, since in the plane of a triangle t is noise for either test. So only boxes bound
+//!    t, a volume's own or the one around it ([`Slabs`], [`Line::in_box`]); the rest of a volume
 //!    decides only whether the line meets it.
 //!
 //! Everything is relative to the centre of the scene, so that no rounding grows with the distance
@@ -40,9 +40,7 @@ pub struct Line {
     pub inv_length_squared: f32,
     /// The widening of a plane whose normal's components have magnitudes that sum to 1.
     pub pad: f32,
-    /// The axis of the direction's greatest component.
-    pub axis: usize,
-    through: Through,
+    axes: [Through; 3],
 }
 
 /// The sum of the magnitudes of a unit vector's components is at most this (the root of 3, rounded up).
@@ -53,30 +51,25 @@ impl Line {
     pub fn new(ray: &Ray, bounds: &Aabb) -> Self {
         let origin = ray.origin - bounds.centre();
         let pad = 4.0 * Slabs::pad(ray.origin, bounds).max_element();
-        let a = ray.dir.abs();
-        let axis = if a.x >= a.y && a.x >= a.z {
-            0
-        } else if a.y >= a.z {
-            1
-        } else {
-            2
-        };
-        Self {
+        let through = Through { lo: 0.0, hi: 0.0, inv: 0.0 };
+        let mut line = Self {
             slabs: Slabs::new(ray, bounds),
             origin,
             dir: ray.dir,
             inv_length_squared: 1.0 / ray.dir.length_squared(),
             pad,
-            axis,
-            through: Through { lo: origin[axis] + pad, hi: origin[axis] - pad, inv: 1.0 / ray.dir[axis] },
-        }
+            axes: [through; 3],
+        };
+        line.axes = Vec3::AXES.map(|axis| line.through(axis, 1.0));
+        line
     }
 
-    /// The earliest and latest t at which anything may be hit that lies between `lo` and `hi` on
-    /// [`Self::axis`], relative to the scene's centre. `lo` and `hi` may err by 12uD.
+    /// The earliest and latest t at which anything may be hit that lies in a box, relative to the
+    /// scene's centre, whose faces may err by 12uD. It misses if the first exceeds the second.
     #[inline(always)]
-    pub fn along(&self, lo: f32, hi: f32) -> (f32, f32) {
-        self.through.interval(lo, hi)
+    pub fn in_box(&self, min: Vec3, max: Vec3) -> (f32, f32) {
+        let [x, y, z] = &self.axes;
+        common(common(x.interval(min.x, max.x), y.interval(min.y, max.y)), z.interval(min.z, max.z))
     }
 
     /// What slabs of planes perpendicular to `normal` need; `sum` is that of the magnitudes of its
@@ -156,8 +149,8 @@ mod tests {
     fn slabs_of_any_direction_hold_what_lies_between_their_planes() {
         let line = Line::new(&Ray::new(Vec3::new(-2.0, 1.0, 1.0), Vec3::X), &BOUNDS);
         let (entry, exit) = line.through(Vec3::new(1.0, 1.0, 0.0), 2.0).interval(-0.25, 0.25);
-        assert!(entry <= 2.75 && entry > 2.7499 && (3.25..3.2501).contains(&exit), "{entry} {exit}");
-        let (entry, exit) = line.along(-0.5, 0.5);
+        assert!((2.7499..=2.75).contains(&entry) && (3.25..3.2501).contains(&exit), "{entry} {exit}");
+        let (entry, exit) = line.in_box(Vec3::splat(-0.5), Vec3::splat(0.5));
         assert!(entry <= 2.5 && (3.5..3.501).contains(&exit));
     }
 
@@ -165,7 +158,8 @@ mod tests {
     fn a_parallel_line_is_inside_or_out() {
         let line = Line::new(&Ray::new(Vec3::new(-2.0, 1.0, 1.0), Vec3::X), &BOUNDS);
         for (lo, hi, inside) in [(0.0, 0.25, true), (-0.25, 0.0, true), (0.1, 0.2, false), (-0.2, -0.1, false)] {
-            let (entry, exit) = common(line.through(Vec3::Y, 1.0).interval(lo, hi), line.along(-0.5, 0.5));
+            let (entry, exit) =
+                common(line.through(Vec3::Y, 1.0).interval(lo, hi), line.in_box(Vec3::splat(-0.5), Vec3::splat(0.5)));
             assert_eq!(entry <= exit, inside, "{lo} {hi}");
             let (entry, exit) = line.clip(Vec3::Y, hi, (0.0, 9.0));
             assert_eq!(entry <= exit, hi >= 0.0);

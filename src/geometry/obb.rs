@@ -66,17 +66,18 @@ impl Obb {
         if entry > exit {
             return None;
         }
-        let (lo, hi) = self.along(line.axis);
-        Some(line.along(lo, hi))
+        let (min, max) = self.rounded_box();
+        let (entry, exit) = line.in_box(min, max);
+        (entry <= exit).then_some((entry, exit))
     }
 
-    /// The least and greatest coordinate on an axis. For axes that are perpendicular but for 3u and
-    /// points within D, that errs by less than 9uD, and by 3uD of rounding.
+    /// The box with faces parallel to the axes. For axes that are perpendicular but for 3u and points
+    /// within D, that errs by less than 9uD, and by 3uD of rounding.
     #[inline(always)]
-    fn along(&self, axis: usize) -> (f32, f32) {
-        let n = Vec3::new(self.axes[0][axis], self.axes[1][axis], self.axes[2][axis]);
-        let (a, b) = (n * self.lo, n * self.hi);
-        (a.min(b).element_sum(), a.max(b).element_sum())
+    fn rounded_box(&self) -> (Vec3, Vec3) {
+        let ends = |i: usize| (self.axes[i] * self.lo[i], self.axes[i] * self.hi[i]);
+        let ((a, b), (c, d), (e, f)) = (ends(0), ends(1), ends(2));
+        (a.min(b) + c.min(d) + e.min(f), a.max(b) + c.max(d) + e.max(f))
     }
 
     /// The area of the surface, taking the axes as perpendicular.

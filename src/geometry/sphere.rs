@@ -39,8 +39,8 @@ impl Sphere {
         if (to_centre - foot * line.dir).length_squared() > radius * radius {
             return None;
         }
-        let centre = self.centre[line.axis];
-        Some(line.along(centre - self.radius, centre + self.radius))
+        let (entry, exit) = line.in_box(self.centre - self.radius, self.centre + self.radius);
+        (entry <= exit).then_some((entry, exit))
     }
 
     /// The area of its surface.

@@ -252,11 +252,12 @@ fn time_tests(
         }
     }
     let row = |k: usize| {
-        let (ns, tests) = (&ns[k], pairs[k].len());
-        let of = |figure: fn(&[f64]) -> f64| if tests == 0 { f64::NAN } else { figure(ns) };
-        TestTime { median: of(median), spread: of(half_iqr), tests, met: met[k] as f64 / tests as f64 }
+        let tests = pairs[k].len();
+        // Of no samples neither is a number.
+        let samples = if tests == 0 { &[] } else { &ns[k][..] };
+        TestTime { median: median(samples), spread: half_iqr(samples), tests, met: met[k] as f64 / tests as f64 }
     };
-    Ok((0..ns.len()).map(row).collect())
+    Ok((0..runs.len()).map(row).collect())
 }
 
 #[cfg(test)]

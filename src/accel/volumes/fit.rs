@@ -10,18 +10,19 @@ use super::points::{Points, levels, ranges};
 use super::volume::Volume;
 use crate::accel::bvh::{Built, MAX_DEPTH};
 use crate::accel::{BuildCx, BuildError};
-use crate::task::Cancelled;
+use crate::task::{Cancelled, Charge, OverBudget};
 
 const _: () = assert!(MAX_DEPTH == 64, "the depth that bounds the work");
-
-/// A node, what was fitted around it, and what it hands up.
-type Fitted<V> = (u32, <V as Volume>::Fit, <V as Volume>::Up);
 
 /// A node to be fitted and what its children handed up.
 type Job<V> = (u32, Option<[<V as Volume>::Up; 2]>);
 
-/// The fits of all nodes, in their order. `boxes` says what a volume must hold (see [`Points`]).
-pub fn fit<V: Volume>(built: &Built, boxes: bool, cx: &BuildCx) -> Result<Vec<V::Fit>, BuildError> {
+/// A node, its fit, and what that hands up.
+type Done<V> = (u32, <V as Volume>::Fit, <V as Volume>::Up);
+
+/// The fits of all nodes, in their order. `boxes` says what a volume must hold (see [`Points`]);
+/// `charge` grows by what fits hold besides their own size.
+pub fn fit<V: Volume>(built: &Built, boxes: bool, charge: &mut Charge, cx: &BuildCx) -> Result<Vec<V::Fit>, BuildError> {
     let nodes = &built.nodes;
     cx.progress.start("fit", nodes.len() as u64);
     let ranges = ranges(nodes.iter().map(|node| node.first_and_count()));
@@ -47,12 +48,18 @@ pub fn fit<V: Volume>(built: &Built, boxes: bool, cx: &BuildCx) -> Result<Vec<V:
                 (*node, left.and_then(|left| Some([take(left)?, take(left + 1)?])))
             })
             .collect();
-        let done: Result<Vec<Fitted<V>>, Cancelled> =
-            cx.pool.run(|| jobs.into_par_iter().with_max_len(64).map(fit_one).collect());
-        for (node, fit, up) in done? {
+        let done: Result<Vec<Done<V>>, Cancelled> = cx.pool.run(|| jobs.into_par_iter().with_max_len(64).map(fit_one).collect());
+        let done = done?;
+        charge.grow(done.iter().map(|(_, fit, _)| V::fit_bytes(fit)).sum()).map_err(too_large)?;
+        for (node, fit, up) in done {
             fits[node as usize] = Some(fit);
             ups[node as usize] = Some(up);
         }
     }
     Ok(fits.into_iter().flatten().collect())
+}
+
+/// What to say when the memory budget does not suffice.
+pub fn too_large(over: OverBudget) -> BuildError {
+    BuildError::Memory { structure: "volumes", over, remedy: "Raise the memory budget, or use bvh." }
 }

@@ -71,7 +71,7 @@ impl Volume for Hull {
     /// Only the directions of the faces come from the hull of the points; how far each face reaches
     /// comes from all points. So whatever the quickhull did, the volume holds them all.
     fn around(points: &Points<'_>, below: Option<[Vec<DVec3>; 2]>) -> Result<(Fitted, Vec<DVec3>), Cancelled> {
-        let few = points.few(below)?;
+        let few = points.for_choosing(below)?;
         points.cancel.check()?;
         let made = hull(&few, TOLERANCE);
         let (normals, loose) = chosen(made.as_ref());
@@ -88,6 +88,10 @@ impl Volume for Hull {
         shared.loose.simplified += fit.loose.simplified;
         shared.loose.failed += fit.loose.failed;
         Self { bounds: fit.bounds, first, count, area: fit.area }
+    }
+
+    fn fit_bytes(fit: &Fitted) -> u64 {
+        size_of_val(&fit.faces[..]) as u64
     }
 
     fn ray(line: &Line) -> Line {

@@ -87,20 +87,19 @@ impl Volume for Octahedron {
 
     #[inline(always)]
     fn interval(&self, (): &(), (line, diagonals): &Self::Ray) -> Option<(f32, f32)> {
-        let (lo, hi) = self.along(line.axis);
-        let along = line.along(lo, hi);
-        let (entry, exit) = self.cut(diagonals, along);
-        (entry <= exit).then_some(along)
+        let (min, max) = self.rounded_box();
+        let in_box = line.in_box(min, max);
+        let (entry, exit) = self.cut(diagonals, in_box);
+        (entry <= exit).then_some(in_box)
     }
 
     fn shape(&self, (): &(), centre: Vec3) -> Shape {
-        let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
-        for k in 0..3 {
-            let (lo, hi) = Self::along(self, k);
-            // The halves of 32-bit sums err by one rounding, the sums with the centre by another.
-            (min[k], max[k]) = (f64::from(lo.next_down()) + f64::from(centre[k]), f64::from(hi.next_up()) + f64::from(centre[k]));
-        }
-        let bounds = Aabb { min: min.map(round_down).into(), max: max.map(round_up).into() };
+        // The halves of 32-bit sums err by one rounding, the sums with the centre by another.
+        let (min, max) = self.rounded_box();
+        let end = |rounded: f32, k: usize| f64::from(rounded) + f64::from(centre[k]);
+        let min: [f32; 3] = std::array::from_fn(|k| round_down(end(min[k].next_down(), k)));
+        let max: [f32; 3] = std::array::from_fn(|k| round_up(end(max[k].next_up(), k)));
+        let bounds = Aabb { min: min.into(), max: max.into() };
         Shape::Convex { bounds, area: area(&self.planes(), reach(&bounds, centre)) }
     }
 }

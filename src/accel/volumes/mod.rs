@@ -34,6 +34,8 @@ use crate::geometry::obb::Obb;
 use crate::geometry::sphere::Sphere;
 use crate::geometry::tri::{Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
+use fit::too_large;
+use glam::DVec3;
 use tree::{Node, Tree};
 use volume::Volume;
 
@@ -119,13 +121,16 @@ pub fn build_volumes(
 }
 
 /// Puts volumes around the nodes. Those traced with `Fast` hold the boxes of the triangles: see
-/// [`Line`] for why.
+/// [`Line`](crate::geometry::Line) for why.
 fn make<T: TriTest, V: Volume>(built: Built, cx: &BuildCx) -> Result<Box<dyn Volumes>, BuildError> {
-    let too_large = |over| BuildError::Memory { structure: "volumes", over, remedy: "Raise the memory budget, or use bvh." };
     let count = built.nodes.len();
-    let fitting = size_of::<V::Fit>() + size_of::<V::Up>() + size_of::<Node<V>>();
-    let mut charge = cx.budget.charge((count * fitting) as u64).map_err(too_large)?;
-    let fits = fit::fit::<V>(&built, T::KIND == TestKind::Fast, cx)?;
+    let fitting = count * (size_of::<V::Fit>() + size_of::<V::Up>() + size_of::<Node<V>>());
+    // What is handed up is at most every point, of two levels at a time; with boxes, eight a triangle.
+    let boxes = T::KIND == TestKind::Fast;
+    let handed_up =
+        if size_of::<V::Up>() == 0 { 0 } else { built.packed.len() * if boxes { 8 } else { 3 } * size_of::<DVec3>() * 2 };
+    let mut charge = cx.budget.charge((fitting + handed_up) as u64).map_err(too_large)?;
+    let fits = fit::fit::<V>(&built, boxes, &mut charge, cx)?;
     let mut shared = V::Shared::default();
     let mut nodes = Vec::with_capacity(count);
     for (fit, node) in fits.into_iter().zip(&built.nodes) {
@@ -133,8 +138,8 @@ fn make<T: TriTest, V: Volume>(built: Built, cx: &BuildCx) -> Result<Box<dyn Vol
         nodes.push(Node { volume: V::store(fit, &mut shared), first, count });
     }
     charge.grow(V::shared_bytes(&shared)).map_err(too_large)?;
-    let Built { geometry, packed, _charge: of_boxes, nodes: boxes, splits, remarks } = built;
-    drop((boxes, of_boxes));
+    let Built { geometry, packed, _charge: of_tree, nodes: tree, splits, remarks } = built;
+    drop((tree, of_tree));
     let bytes = size_of_val(&nodes[..]) as u64 + V::shared_bytes(&shared) + size_of_val(&packed[..]) as u64;
     drop(charge);
     let charge = cx.budget.charge(bytes).map_err(too_large)?;

@@ -21,7 +21,7 @@ impl Volume for Obb {
     /// along them, and those of the box with faces parallel to the axes, from all points. The
     /// smaller of the two boxes is taken.
     fn around(points: &Points<'_>, below: Option<[Vec<DVec3>; 2]>) -> Result<(Self, Vec<DVec3>), Cancelled> {
-        let few = points.few(below)?;
+        let few = points.for_choosing(below)?;
         let (mut turned, mut straight) = (Extents::new(good_axes(&few)), Extents::new(Vec3::AXES));
         points.each(|p| {
             turned.add(p);

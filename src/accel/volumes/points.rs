@@ -45,7 +45,7 @@ impl Points<'_> {
 
     /// Points to choose a volume by: all of them in a small node, in a large one what the children
     /// handed up.
-    pub fn few(&self, below: Option<[Vec<DVec3>; 2]>) -> Result<Vec<DVec3>, Cancelled> {
+    pub fn for_choosing(&self, below: Option<[Vec<DVec3>; 2]>) -> Result<Vec<DVec3>, Cancelled> {
         const SMALL: usize = 32;
         match below {
             Some([mut left, right]) if self.triangles.len() > SMALL => {

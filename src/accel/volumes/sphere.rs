@@ -24,7 +24,7 @@ impl Volume for Sphere {
     /// The smallest ball around the points of a small node, or around the extreme points of a large
     /// one; its radius comes from all points in any case.
     fn around(points: &Points<'_>, below: Option<[Vec<DVec3>; 2]>) -> Result<(Self, Vec<DVec3>), Cancelled> {
-        let mut few = points.few(below)?;
+        let mut few = points.for_choosing(below)?;
         let mut best = Self::new(Vec3::ZERO, f64::INFINITY);
         for _ in 0..ROUNDS {
             let Some((centre, radius)) = smallest_ball(&few) else { break };

@@ -36,6 +36,12 @@ pub trait Volume: Copy + Debug + Send + Sync + 'static {
     /// Stores a fit; called for every node in order.
     fn store(fit: Self::Fit, shared: &mut Self::Shared) -> Self;
 
+    /// Bytes of a fit besides its own size.
+    fn fit_bytes(fit: &Self::Fit) -> u64 {
+        let _ = fit;
+        0
+    }
+
     /// Works out what depends on the ray only.
     fn ray(line: &Line) -> Self::Ray;
 
