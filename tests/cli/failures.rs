@@ -26,7 +26,7 @@ fn bad_arguments_are_explained() {
         (&["stats", "builtin:lecture", "--structure", "oak"], "brute, bound, bvh, volumes, kdtree, grid"),
         (&["stats", "builtin:lecture"], "--structure"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "bins=1"], "a whole number from 2"),
-        (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "leaves=1"], "there is bins"),
+        (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "leaves=1"], "there is builder"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--test", "slow"], "watertight or fast"),
         (&["compare", "builtin:lecture", "--rays", "gamma"], "primary, shadow, diffuse or lines"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--alpha", "1.5"], "from 0 to 1"),
