@@ -1,8 +1,9 @@
 //! Whether a structure is well formed: cells lie in their parents, triangles in their leaves, no
 //! cell is met twice, and every live triangle can be reached.
 //!
-//! Of volumes that are no boxes a child's may stick out of its parent's, as a sphere around a half
-//! does out of the sphere around the whole: there the triangles below must lie in the parent.
+//! Of bounding volumes that are no boxes a child's may stick out of its parent's, as a sphere around a
+//! half does out of the sphere around the whole: there the triangles below must lie in the parent. The
+//! cells of a partition always lie in each other, and triangles reach beyond them.
 
 use std::collections::HashSet;
 use std::ops::ControlFlow;
@@ -59,8 +60,8 @@ pub fn defects(cells: &dyn Cells, geometry: &Geometry, limit: usize) -> Vec<Defe
         if cells.layout().slack().is_none() || cell.depth > 0 {
             cells.children(cell, &mut |child| {
                 let inside = match cell.shape {
-                    Shape::Box(_) => *child.shape.bounds(),
-                    Shape::Convex { .. } => triangles_below(cells, &child, geometry),
+                    Shape::Convex { .. } if cells.layout().nests() => triangles_below(cells, &child, geometry),
+                    _ => *child.shape.bounds(),
                 };
                 if !taken_in(bounds, cells.layout()).contains_box(&inside) {
                     found.push(Defect::Outside { child: child.id.node, parent: cell.id.node });
