@@ -77,6 +77,8 @@ pub enum CellKind {
         /// How many references.
         prims: u32,
     },
+    /// Nothing, and there is no node: a part of a divided cell that rays pass by without a step.
+    Void,
 }
 
 /// A node or cell.
@@ -95,15 +97,15 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Whether it holds primitives rather than cells.
+    /// Whether it holds no cells: primitives, or nothing.
     pub const fn is_leaf(&self) -> bool {
-        matches!(self.kind, CellKind::Leaf { .. })
+        !matches!(self.kind, CellKind::Inner)
     }
 
     /// How many references it holds itself.
     pub const fn prims(&self) -> u32 {
         match self.kind {
-            CellKind::Inner => 0,
+            CellKind::Inner | CellKind::Void => 0,
             CellKind::Leaf { prims } => prims,
         }
     }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::cell::{Cell, Cells, Descend, Layout, MemoryPart, Shape, walk};
+use super::cell::{Cell, CellKind, Cells, Descend, Layout, MemoryPart, Shape, walk};
 use super::params::{C_ISECT, C_TRAV, Param, ParamValues, Value};
 use crate::geometry::Aabb;
 use crate::task::{Cancel, Cancelled};
@@ -52,7 +52,8 @@ pub struct Stats {
     /// a grid charges C_trav for every cell but the root instead, since a ray steps into each.
     pub sah: f64,
     /// Nodes and cells that a random line through the root enters, leaves among them, if nothing ends
-    /// it early: `sum over nodes of A(n)/A(root)`, for cells that nest; a grid enters cells alone.
+    /// it early: `sum over nodes of A(n)/A(root)`, for cells that nest; a grid enters cells alone, and space
+    /// without a node is passed by.
     pub expected_nodes: f64,
     /// Triangle tests of the same line: `sum over leaves of prims A(n)/A(root)`.
     pub expected_tests: f64,
@@ -160,7 +161,7 @@ impl Sums {
         if if stepped { cell.depth > 0 } else { !cell.is_leaf() } {
             self.cost += area * weights.c_trav;
         }
-        if cell.depth > 0 || !stepped {
+        if (cell.depth > 0 || !stepped) && cell.kind != CellKind::Void {
             self.nodes += area;
         }
         if prims > 0.0 {

@@ -119,7 +119,7 @@ impl Collector<'_> {
         let leaf = cell.is_leaf();
         s.boxes
             && match cell.kind {
-                CellKind::Leaf { prims: 0 } if !s.empty_cells => false,
+                CellKind::Void | CellKind::Leaf { prims: 0 } if !s.empty_cells => false,
                 _ if self.resolution.is_some() => leaf && self.in_slice(cell),
                 _ if s.leaves_only => leaf,
                 _ => (s.from_depth..=s.depth).contains(&cell.depth),

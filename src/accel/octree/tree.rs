@@ -56,8 +56,7 @@ impl<T: TriTest> Octree<T> {
     /// An octant without triangles has no node; it is numbered after all that have one.
     fn empty_cell(&self, parent: u32, octant: u8, depth: u32, bounds: Aabb) -> Cell {
         let node = num::index(self.built.nodes.len() + parent as usize * 8 + usize::from(octant));
-        let kind = CellKind::Leaf { prims: 0 };
-        Cell { id: CellId { instance: 0, node }, depth, shape: Shape::Box(bounds), split: None, kind }
+        Cell { id: CellId { instance: 0, node }, depth, shape: Shape::Box(bounds), split: None, kind: CellKind::Void }
     }
 }
 

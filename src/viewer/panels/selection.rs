@@ -48,6 +48,7 @@ fn levels(ui: &mut Ui, picked: &Picked, cell: &Cell, commands: &mut Commands) {
     });
     let kind = match cell.kind {
         CellKind::Inner => "node".to_owned(),
+        CellKind::Void => "empty space".to_owned(),
         CellKind::Leaf { prims } => format!("leaf of {}", format::count(prims.into())),
     };
     fact(
