@@ -105,7 +105,7 @@ pub const ALL: &[Entry] = &[
     },
     Entry {
         id: "volumes",
-        name: "Bounding volumes",
+        name: "Volumes (BVH)",
         short: "Volumes",
         family: Family::Bvh,
         help: "The tree of the BVH with spheres, turned boxes, k-DOPs or convex hulls around its nodes: tightness against cost.",

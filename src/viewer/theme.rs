@@ -39,6 +39,8 @@ pub const RIGHT_PANEL: f32 = 280.0;
 pub const BOTTOM_PANEL: f32 = 184.0;
 /// The height of the bar at the top.
 pub const TOP_BAR: f32 = 32.0;
+/// From this width on the structures and what is shown of them stand in one row above the view.
+pub const ONE_ROW: f32 = 840.0;
 /// Below this window width the right panel folds to a strip.
 pub const FOLD_BELOW: f32 = 1100.0;
 /// The size of the window at first.

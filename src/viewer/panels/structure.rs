@@ -1,6 +1,6 @@
 //! Which structure, with what parameters, and how its build gets on.
 
-use eframe::egui::{CollapsingHeader, ComboBox, DragValue, ProgressBar, Ui};
+use eframe::egui::{Button, CollapsingHeader, ComboBox, DragValue, ProgressBar, Ui};
 
 use super::{Commands, heading};
 use crate::accel::params::{Kind, Param, Value};
@@ -58,6 +58,11 @@ fn parameters(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
     CollapsingHeader::new("Parameters").id_salt("parameters").show(ui, |ui| {
         let before = state.settings.params_of(entry);
+        let changed = before != entry.defaults();
+        let defaults = ui.add_enabled(changed, Button::new("Defaults"));
+        if defaults.on_hover_text("Bring back every parameter of this structure.").clicked() {
+            commands.push(Command::Params(entry.defaults()));
+        }
         let mut values = before.clone();
         let mut settled = false;
         for (param, value) in values.iter_mut() {
@@ -65,9 +70,6 @@ fn parameters(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
         if settled && values != before {
             commands.push(Command::Params(values));
-        }
-        if before != entry.defaults() && ui.button("Defaults").clicked() {
-            commands.push(Command::Params(entry.defaults()));
         }
     });
 }

@@ -1,6 +1,6 @@
 //! The row above the viewport: structure, what is shown, depth.
 
-use eframe::egui::{ComboBox, Slider, Ui};
+use eframe::egui::{Button, ComboBox, Slider, Ui};
 
 use super::Commands;
 use crate::accel::cell::Layout;
@@ -13,18 +13,28 @@ use crate::viewer::theme;
 
 /// Draws the row.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().slider_width = theme::SHORT_SLIDER;
-        ui.add_enabled_ui(!state.is_measuring(), |ui| structure(ui, state, commands));
+    ui.spacing_mut().slider_width = theme::SHORT_SLIDER;
+    let look = |ui: &mut Ui, commands: &mut Commands| {
         mode(ui, state, commands);
         depth(ui, state, commands);
-    });
+    };
+    if ui.available_width() >= theme::ONE_ROW {
+        ui.horizontal(|ui| {
+            structure(ui, state, commands);
+            look(ui, commands);
+        });
+    } else {
+        ui.horizontal(|ui| structure(ui, state, commands));
+        ui.add_space(theme::GRID);
+        ui.horizontal(|ui| look(ui, commands));
+    }
 }
 
 fn structure(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let chosen = state.settings.entry();
     for entry in registry::ALL {
-        let tab = ui.selectable_label(entry.id == chosen.id, entry.short).accessible_name(entry.name);
+        let tab = ui.add_enabled(!state.is_measuring(), Button::selectable(entry.id == chosen.id, entry.short));
+        let tab = tab.accessible_name(entry.name);
         if tab.on_hover_text(format!("{}. {}", entry.name, entry.help)).clicked() {
             commands.push(Command::Structure(entry.id));
         }

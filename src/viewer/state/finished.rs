@@ -50,7 +50,9 @@ impl State {
 
     fn opened(&mut self, name: &str, model: Model) {
         self.settings.opened(name);
-        self.camera = CameraSpec::or_first(self.first_camera.take().as_ref(), &model.scene, &model.geometry, self.aspect());
+        let spec = self.first_camera.take();
+        self.camera = CameraSpec::or_first(spec.as_ref(), &model.scene, &model.geometry, self.aspect());
+        self.framed = spec.is_none().then_some((self.camera, self.size_px));
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
         (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
         self.picking = None;

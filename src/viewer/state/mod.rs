@@ -41,6 +41,9 @@ pub struct State {
     pub shown: Option<Built>,
     /// The view.
     pub camera: Camera,
+    /// The view that an opened model was framed in, and for what viewport: as long as nobody has moved
+    /// it, it follows the viewport's shape.
+    framed: Option<(Camera, [u32; 2])>,
     /// Where the first model is to be seen from, instead of where it suits.
     pub first_camera: Option<CameraSpec>,
     /// For amounts: fixed by the user, or from the picture.
@@ -146,6 +149,7 @@ impl State {
             model: None,
             shown: None,
             camera: Camera::framing(&crate::geometry::Aabb::EMPTY, glam::Vec3::Z, glam::Vec3::Y, 1.0),
+            framed: None,
             first_camera: None,
             range: None,
             picture: None,
@@ -424,6 +428,7 @@ impl State {
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();
+        self.follow_viewport();
         self.refresh_picture();
         self.advance_statistics();
         self.refresh_overlay();

@@ -12,6 +12,17 @@ use crate::viewer::pick::Picked;
 use crate::viewer::{format, workers};
 
 impl State {
+    /// The first view of a model is framed anew when the viewport changes before the camera does.
+    pub(super) fn follow_viewport(&mut self) {
+        let (Some((camera, size_px)), Some(model)) = (self.framed, &self.model) else { return };
+        if camera != self.camera {
+            self.framed = None;
+        } else if size_px != self.size_px {
+            self.camera = model.scene.first_camera(model.geometry.world_bounds(), self.aspect());
+            self.framed = Some((self.camera, self.size_px));
+        }
+    }
+
     /// Asks for a picture if what is to be seen has changed, and takes the newest.
     pub(super) fn refresh_picture(&mut self) {
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
