@@ -134,12 +134,20 @@ pub fn prim_boxes(geometry: &Geometry, cx: &BuildCx) -> Result<Vec<PrimBox>, Bui
 
 /// A list made in parallel by index, with a look at the cancel flag every chunk.
 pub fn in_chunks<V: Send + Copy>(n: usize, cx: &BuildCx, make: impl Fn(usize) -> V + Sync) -> Result<Vec<V>, BuildError> {
-    let chunk = |c: usize| {
-        cx.progress.advance(CHUNK as u64);
-        cx.cancel.check().map(|()| (c * CHUNK..n.min((c + 1) * CHUNK)).map(&make).collect::<Vec<V>>())
+    let mut list = Vec::new();
+    // What is left of a cancelled list is filled with whatever some chunk began with.
+    let entry = |filler: &mut Option<V>, i: usize| {
+        if i.is_multiple_of(CHUNK) {
+            cx.progress.advance(CHUNK as u64);
+            if cx.cancel.is_cancelled() && filler.is_none() {
+                *filler = Some(make(i));
+            }
+        }
+        filler.unwrap_or_else(|| make(i))
     };
-    let chunks: Result<Vec<Vec<V>>, _> = cx.pool.run(|| (0..n.div_ceil(CHUNK)).into_par_iter().map(chunk).collect());
-    Ok(chunks?.concat())
+    cx.pool.run(|| (0..n).into_par_iter().with_min_len(CHUNK).map_init(|| None, entry).collect_into_vec(&mut list));
+    cx.cancel.check()?;
+    Ok(list)
 }
 
 /// A point in four lanes.

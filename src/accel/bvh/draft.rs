@@ -6,6 +6,7 @@ use super::boxes::{Bounds, PrimBox, in_chunks};
 use super::costs::Costs;
 use super::median::ObjectMedian;
 use super::slice::{InPlace, Slice};
+use super::subtree::{PLACE, Subtree};
 use super::topdown::{self, Limits};
 use super::tree::{Node, Packed};
 use crate::accel::{BuildCx, BuildError};
@@ -33,60 +34,55 @@ impl Draft {
 
     /// The SAH cost once leaves are collapsed, times the root's area.
     pub fn cost(&self, costs: &Costs, max_leaf: u32, cx: &BuildCx) -> Result<f64, BuildError> {
-        Ok(summaries(self, costs, max_leaf, cx)?.1)
+        Ok(summaries(self, costs, max_leaf, cx)?.first().map_or(0.0, |root| root.cost))
     }
 
     /// Brings a tree of any builder into the order of a walk, within the limits. Nodes become leaves
     /// where that is cheaper: decided from the leaves up, so no other choice of leaves costs less.
     pub fn arranged(self, geometry: &Geometry, costs: &Costs, limits: Limits, cx: &BuildCx) -> Result<Self, BuildError> {
         cx.progress.start("arrange", self.refs.len() as u64);
-        let (summaries, _) = summaries(&self, costs, limits.max_leaf, cx)?;
-        let count = self.refs.len();
-        let draft = Self { nodes: Vec::with_capacity(self.nodes.len()), refs: Vec::with_capacity(count) };
-        let mut arranger = Arranger { from: &self, summaries: &summaries, geometry, limits, cx, draft };
-        arranger.run()?;
-        arranger.draft.nodes.shrink_to_fit();
-        Ok(arranger.draft)
+        let summaries = summaries(&self, costs, limits.max_leaf, cx)?;
+        let arranger = Arranger { from: &self, summaries: &summaries, geometry, limits, cx };
+        Ok(cx.pool.run(|| arranger.subtree(0, 0))?.joined())
     }
 }
 
 /// What is below a node, once leaves are collapsed.
 #[derive(Clone, Copy, Default)]
 struct Summary {
+    /// The SAH cost of it all, times the root's area.
+    cost: f64,
     triangles: u32,
     /// Steps to the deepest leaf, saturating.
     height: u8,
     is_leaf: bool,
 }
 
-/// From the last node to the first, so that children come before their parent; and the cost of the
-/// whole tree.
-fn summaries(draft: &Draft, costs: &Costs, max_leaf: u32, cx: &BuildCx) -> Result<(Vec<Summary>, f64), BuildError> {
+/// From the last node to the first, so that children come before their parent.
+fn summaries(draft: &Draft, costs: &Costs, max_leaf: u32, cx: &BuildCx) -> Result<Vec<Summary>, BuildError> {
     let mut summaries = vec![Summary::default(); draft.nodes.len()];
-    let mut below = vec![0f64; draft.nodes.len()];
     for at in (0..draft.nodes.len()).rev() {
         if at.is_multiple_of(1 << 14) {
             cx.cancel.check()?;
         }
         let node = &draft.nodes[at];
         let area = node.bounds().area();
-        (summaries[at], below[at]) = match node.left() {
+        summaries[at] = match node.left() {
             None => {
-                let count = node.count();
-                (Summary { triangles: count, height: 0, is_leaf: true }, costs.triangles(area, count as usize))
+                let triangles = node.count();
+                Summary { cost: costs.triangles(area, triangles as usize), triangles, height: 0, is_leaf: true }
             }
             Some(left) => {
-                let (l, r) = (left as usize, left as usize + 1);
-                let (a, b) = (summaries[l], summaries[r]);
+                let (a, b) = (summaries[left as usize], summaries[left as usize + 1]);
                 let triangles = a.triangles + b.triangles;
-                let (inner, leaf) = (costs.c_trav * area + below[l] + below[r], costs.triangles(area, triangles as usize));
+                let (inner, leaf) = (costs.c_trav * area + a.cost + b.cost, costs.triangles(area, triangles as usize));
                 let is_leaf = triangles <= max_leaf && leaf <= inner;
                 let height = if is_leaf { 0 } else { a.height.max(b.height).saturating_add(1) };
-                (Summary { triangles, height, is_leaf }, if is_leaf { leaf } else { inner })
+                Summary { cost: if is_leaf { leaf } else { inner }, triangles, height, is_leaf }
             }
         };
     }
-    Ok((summaries, below.first().copied().unwrap_or(0.0)))
+    Ok(summaries)
 }
 
 struct Arranger<'a> {
@@ -95,7 +91,6 @@ struct Arranger<'a> {
     geometry: &'a Geometry,
     limits: Limits,
     cx: &'a BuildCx,
-    draft: Draft,
 }
 
 /// What is written where, and how deep that is.
@@ -105,34 +100,48 @@ struct Open {
     depth: u32,
 }
 
+/// Triangles below which a subtree is arranged by one thread.
+const FORK: u32 = 1 << 14;
+
 impl Arranger<'_> {
-    fn run(&mut self) -> Result<(), BuildError> {
-        self.draft.nodes.push(self.from.nodes[0]);
-        let mut open = vec![Open { from: 0, to: 0, depth: 0 }];
-        let mut steps = 0usize;
-        while let Some(Open { from, to, depth }) = open.pop() {
-            steps += 1;
-            if steps.is_multiple_of(1 << 14) {
-                self.cx.cancel.check()?;
-                self.cx.progress.advance(1 << 14);
+    /// No deeper than the limit, whatever the tree is like.
+    fn subtree(&self, from: u32, depth: u32) -> Result<Subtree, BuildError> {
+        self.cx.cancel.check()?;
+        let here = &self.summaries[from as usize];
+        match self.from.nodes[from as usize].left() {
+            Some(left) if here.triangles >= FORK && !here.is_leaf && self.fits(left, depth) => {
+                let (left, right) = rayon::join(|| self.subtree(left, depth + 1), || self.subtree(left + 1, depth + 1));
+                Ok(Subtree::Fork(Box::new((left?, right?))))
             }
+            _ => self.list(from, depth).map(Subtree::List),
+        }
+    }
+
+    /// The same by one thread.
+    fn list(&self, from: u32, depth: u32) -> Result<Draft, BuildError> {
+        let count = self.summaries[from as usize].triangles as usize;
+        let mut list = Draft { nodes: Vec::with_capacity(count), refs: Vec::with_capacity(count) };
+        list.nodes.push(PLACE);
+        let mut open = vec![Open { from, to: 0, depth }];
+        while let Some(Open { from, to, depth }) = open.pop() {
             let node = self.from.nodes[from as usize];
             match node.left() {
                 Some(left) if !self.summaries[from as usize].is_leaf => {
                     if !self.fits(left, depth) {
-                        self.rebuild(from, to, depth)?;
+                        self.rebuild(&mut list, from, to, depth)?;
                         continue;
                     }
-                    let pair = self.draft.nodes.len();
-                    self.draft.nodes[to] = Node::inner(&node.bounds(), num::index(pair));
-                    self.draft.nodes.extend([node; 2]);
+                    let pair = list.nodes.len();
+                    list.nodes[to] = Node::inner(&node.bounds(), num::index(pair));
+                    list.nodes.extend([PLACE; 2]);
                     open.push(Open { from: left + 1, to: pair + 1, depth: depth + 1 });
                     open.push(Open { from: left, to: pair, depth: depth + 1 });
                 }
-                _ => self.leaf(from, to),
+                _ => self.leaf(&mut list, from, to),
             }
         }
-        Ok(())
+        self.cx.progress.advance(count as u64);
+        Ok(list)
     }
 
     /// Whether both children at `left` either end in time or can still be halved down to size.
@@ -145,45 +154,45 @@ impl Arranger<'_> {
         })
     }
 
-    fn leaf(&mut self, from: u32, to: usize) {
-        let first = self.draft.refs.len();
-        self.gather(from);
+    fn leaf(&self, list: &mut Draft, from: u32, to: usize) {
+        let first = list.refs.len();
+        self.gather(list, from);
         if self.from.nodes[from as usize].left().is_some() {
             // Two leaves that become one may hold parts of the same triangle.
-            let mut all = self.draft.refs.split_off(first);
+            let mut all = list.refs.split_off(first);
             all.sort_unstable();
             all.dedup();
-            self.draft.refs.append(&mut all);
+            list.refs.append(&mut all);
         }
-        let count = self.draft.refs.len() - first;
+        let count = list.refs.len() - first;
         let bounds = self.from.nodes[from as usize].bounds();
-        self.draft.nodes[to] = Node::leaf(&bounds, num::index(first), num::index(count));
+        list.nodes[to] = Node::leaf(&bounds, num::index(first), num::index(count));
     }
 
     /// Appends all triangles below a node.
-    fn gather(&mut self, from: u32) {
+    fn gather(&self, list: &mut Draft, from: u32) {
         let mut open = vec![from];
         while let Some(at) = open.pop() {
             let node = &self.from.nodes[at as usize];
             match node.left() {
                 Some(left) => open.extend([left + 1, left]),
-                None => self.draft.refs.extend_from_slice(&self.from.refs[node.range()]),
+                None => list.refs.extend_from_slice(&self.from.refs[node.range()]),
             }
         }
     }
 
     /// Builds what would be too deep anew, halving: as shallow as can be.
-    fn rebuild(&mut self, from: u32, to: usize, depth: u32) -> Result<(), BuildError> {
-        let first = self.draft.refs.len();
-        self.gather(from);
+    fn rebuild(&self, list: &mut Draft, from: u32, to: usize, depth: u32) -> Result<(), BuildError> {
+        let first = list.refs.len();
+        self.gather(list, from);
         let boxed = |prim: PrimRef| PrimBox::new(&Bounds::from(&Aabb::of_triangle(&self.geometry.corners(prim))), prim);
-        let mut prims: Vec<PrimBox> = self.draft.refs.drain(first..).map(boxed).collect();
+        let mut prims: Vec<PrimBox> = list.refs.drain(first..).map(boxed).collect();
         let limits = Limits { max_depth: self.limits.max_depth - depth, ..self.limits };
         let built = topdown::build(&InPlace::new(ObjectMedian), Slice::new(&mut prims), limits, self.cx)?;
-        let by = num::index(self.draft.nodes.len() - 1);
-        self.draft.nodes[to] = built.nodes[0].moved(by, num::index(first));
-        self.draft.nodes.extend(built.nodes[1..].iter().map(|node| node.moved(by, num::index(first))));
-        self.draft.refs.extend_from_slice(&built.refs);
+        let by = num::index(list.nodes.len() - 1);
+        list.nodes[to] = built.nodes[0].moved(by, num::index(first));
+        list.nodes.extend(built.nodes[1..].iter().map(|node| node.moved(by, num::index(first))));
+        list.refs.extend_from_slice(&built.refs);
         Ok(())
     }
 }

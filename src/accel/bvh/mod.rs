@@ -13,11 +13,13 @@ mod draft;
 mod lbvh;
 mod median;
 mod morton;
+mod nearest;
 mod ploc;
 mod preset;
 mod reinsertion;
 mod sbvh;
 mod slice;
+mod subtree;
 mod sweep;
 mod topdown;
 mod tree;
@@ -86,7 +88,7 @@ pub const PARAMS: &[Param] = &[
         label: "Search radius",
         help: "Builder ploc: how far along the Morton curve a cluster looks for its nearest neighbour.",
         unit: "clusters",
-        kind: Kind::Int { min: 1, max: 128, default: 14 },
+        kind: Kind::Int { min: 1, max: nearest::MAX_RADIUS as u32, default: 14 },
     },
     Param {
         id: "reinsertion",

@@ -8,12 +8,13 @@
 
 use rayon::prelude::*;
 
-use super::boxes::PrimBox;
+use super::boxes::{PrimBox, in_chunks};
 use super::draft::Draft;
 use super::morton;
+use super::nearest::neighbours;
 use super::tree::Node;
 use crate::accel::{BuildCx, BuildError};
-use crate::geometry::{Aabb, num};
+use crate::geometry::num;
 
 /// Clusters handled between two looks at the cancel flag.
 const CHUNK: usize = 1 << 12;
@@ -24,113 +25,84 @@ const LEAST_SHARE: usize = 16;
 /// Builds over some triangles, at least one, with a leaf for each; called on the pool.
 pub fn build(boxes: &[PrimBox], radius: usize, cx: &BuildCx) -> Result<Draft, BuildError> {
     let order = morton::sorted(boxes, cx)?;
-    let prim = |at: usize| &boxes[order[at].1 as usize];
-    let mut clusters: Vec<Node> = (0..order.len()).map(|i| Node::leaf(&prim(i).bounds().aabb(), num::index(i), 1)).collect();
-    let refs = (0..order.len()).map(|i| prim(i).prim()).collect();
-    let mut nodes = vec![clusters[0]; 2 * order.len() - 1];
+    let prim = |i: usize| &boxes[order[i].1 as usize];
+    let mut clusters = in_chunks(order.len(), cx, |i| Node::leaf(&prim(i).bounds().aabb(), num::index(i), 1))?;
+    let refs = in_chunks(order.len(), cx, |i| prim(i).prim())?;
+    let mut nodes = in_chunks(2 * order.len() - 1, cx, |_| clusters[0])?;
     // Pairs are written from the end towards the root, so that children come after their parent.
     let mut free = nodes.len();
     while clusters.len() > 1 {
-        let neighbours = neighbours(&clusters, radius, cx)?;
-        let plan = Plan::new(neighbours);
-        let pairs = plan.merging;
-        cx.progress.advance(pairs as u64);
-        let from = free - 2 * pairs;
-        clusters = plan.merge(&clusters, &mut nodes[from..free], from, cx)?;
+        let mates = Mates::new(neighbours(&clusters, radius, cx)?);
+        cx.progress.advance(mates.pairs as u64);
+        let from = free - 2 * mates.pairs;
+        clusters = mates.merge(&clusters, &mut nodes[from..free], from, cx)?;
         free = from;
     }
     nodes[0] = clusters[0];
     Ok(Draft { nodes, refs })
 }
 
-/// Each cluster's nearest within the radius. Of equally near ones the partner in even pairs, then the
-/// one that lies nearer, then the lower: so equal clusters pair up, and some pair always agrees.
-fn neighbours(clusters: &[Node], radius: usize, cx: &BuildCx) -> Result<Vec<u32>, BuildError> {
-    let nearest = |i: usize| {
-        let own = clusters[i].bounds();
-        let (first, last) = (i.saturating_sub(radius), (i + radius).min(clusters.len() - 1));
-        let mut best = (f32::INFINITY, usize::MAX, i);
-        for j in (first..=last).filter(|j| *j != i) {
-            let area = half_area(&own.union(clusters[j].bounds()));
-            if area > best.0 {
-                continue;
-            }
-            let rank = if j == i ^ 1 { 0 } else { i.abs_diff(j) };
-            if area < best.0 || rank < best.1 {
-                best = (area, rank, j);
-            }
-        }
-        num::index(best.2)
-    };
-    let mut found = vec![0; clusters.len()];
-    found.par_chunks_mut(CHUNK).enumerate().try_for_each(|(c, found)| {
-        found.iter_mut().enumerate().for_each(|(k, found)| *found = nearest(c * CHUNK + k));
-        cx.cancel.check()
-    })?;
-    Ok(found)
+/// Which clusters of a round merge: two that are each other's nearest.
+struct Mates {
+    nearest: Vec<u32>,
+    /// Pairs in all.
+    pairs: usize,
+    /// Pairs whose first cluster is in a chunk.
+    in_chunk: Vec<usize>,
 }
 
-/// Half the surface area; single precision decides near ties one way or the other, no more.
-#[inline(always)]
-fn half_area(b: &Aabb) -> f32 {
-    let d = b.max - b.min;
-    d.x * (d.y + d.z) + d.y * d.z
-}
-
-/// Which clusters of a round merge.
-struct Plan {
-    /// What each cluster merges with; itself if it does not.
-    partner: Vec<u32>,
-    merging: usize,
-}
-
-impl Plan {
-    fn new(mut partner: Vec<u32>) -> Self {
-        let mutual = |partner: &[u32], i: usize| partner[partner[i] as usize] as usize == i;
-        let agreed: Vec<bool> = (0..partner.len()).map(|i| mutual(&partner, i)).collect();
-        for (i, agreed) in agreed.iter().enumerate().filter(|(_, agreed)| !**agreed) {
-            debug_assert!(!agreed);
-            partner[i] = num::index(i);
+impl Mates {
+    fn new(nearest: Vec<u32>) -> Self {
+        let mut mates = Self { nearest, pairs: 0, in_chunk: Vec::new() };
+        mates.count();
+        if mates.pairs * LEAST_SHARE < mates.nearest.len() {
+            mates.force();
+            mates.count();
         }
-        let merging = agreed.iter().filter(|a| **a).count() / 2;
-        let mut plan = Self { partner, merging };
-        if plan.merging * LEAST_SHARE < plan.partner.len() {
-            plan.force();
-        }
-        plan
+        mates
+    }
+
+    fn count(&mut self) {
+        let leads = |c: usize| self.range(c).filter(|i| self.of(*i) > *i).count();
+        self.in_chunk = (0..self.nearest.len().div_ceil(CHUNK)).into_par_iter().map(leads).collect();
+        self.pairs = self.in_chunk.iter().sum();
+    }
+
+    /// The clusters of a chunk.
+    fn range(&self, chunk: usize) -> std::ops::Range<usize> {
+        chunk * CHUNK..self.nearest.len().min((chunk + 1) * CHUNK)
+    }
+
+    /// What a cluster merges with; itself if with none.
+    #[inline(always)]
+    fn of(&self, i: usize) -> usize {
+        let mate = self.nearest[i] as usize;
+        if self.nearest[mate] as usize == i { mate } else { i }
     }
 
     /// Merges what is left over with its neighbour.
     fn force(&mut self) {
-        for pair in (0..self.partner.len() - 1).step_by(2) {
-            if self.alone(pair) && self.alone(pair + 1) {
-                (self.partner[pair], self.partner[pair + 1]) = (num::index(pair + 1), num::index(pair));
-                self.merging += 1;
+        for i in (0..self.nearest.len() - 1).step_by(2) {
+            if self.of(i) == i && self.of(i + 1) == i + 1 {
+                (self.nearest[i], self.nearest[i + 1]) = (num::index(i + 1), num::index(i));
             }
         }
-    }
-
-    fn alone(&self, i: usize) -> bool {
-        self.partner[i] as usize == i
     }
 
     /// The clusters of the next round, each at the place of the first it was made of; merged ones go
     /// to `pairs`, which begin at `at` in the list of all nodes.
     fn merge(&self, clusters: &[Node], pairs: &mut [Node], at: usize, cx: &BuildCx) -> Result<Vec<Node>, BuildError> {
-        let chunks = self.partner.len().div_ceil(CHUNK);
-        let range = |c: usize| c * CHUNK..self.partner.len().min((c + 1) * CHUNK);
-        let leads = |c: usize| range(c).filter(|i| self.partner[*i] as usize > *i).count();
-        let kept = |c: usize| range(c).filter(|i| self.partner[*i] as usize >= *i).count();
-        let counts: Vec<(usize, usize)> = (0..chunks).into_par_iter().map(|c| (leads(c), kept(c))).collect();
-        let mut next = vec![clusters[0]; self.partner.len() - self.merging];
+        let seconds = |c: usize| self.range(c).filter(|i| self.of(*i) < *i).count();
+        let gone: Vec<usize> = (0..self.in_chunk.len()).into_par_iter().map(seconds).collect();
+        let mut next = vec![clusters[0]; self.nearest.len() - self.pairs];
         // Every chunk writes into its own part of both lists.
-        let mut jobs = Vec::with_capacity(chunks);
+        let mut jobs = Vec::with_capacity(gone.len());
         let (mut pairs_left, mut next_left, mut first) = (pairs, &mut next[..], at);
-        for (c, (leads, kept)) in counts.into_iter().enumerate() {
+        for (c, (leads, gone)) in self.in_chunk.iter().zip(gone).enumerate() {
             let (pairs, next);
             (pairs, pairs_left) = pairs_left.split_at_mut(2 * leads);
-            (next, next_left) = next_left.split_at_mut(kept);
-            jobs.push((range(c), pairs, next, first));
+            (next, next_left) = next_left.split_at_mut(self.range(c).len() - gone);
+            jobs.push((self.range(c), pairs, next, first));
             first += 2 * leads;
         }
         jobs.into_par_iter().try_for_each(|(range, pairs, next, first)| {
@@ -143,14 +115,14 @@ impl Plan {
     fn merge_chunk(&self, clusters: &[Node], range: std::ops::Range<usize>, pairs: &mut [Node], next: &mut [Node], first: usize) {
         let (mut pair, mut to) = (0, 0);
         for i in range {
-            let j = self.partner[i] as usize;
-            if j < i {
+            let mate = self.of(i);
+            if mate < i {
                 continue;
             }
             next[to] = clusters[i];
-            if j > i {
-                (pairs[pair], pairs[pair + 1]) = (clusters[i], clusters[j]);
-                let bounds = clusters[i].bounds().union(clusters[j].bounds());
+            if mate > i {
+                (pairs[pair], pairs[pair + 1]) = (clusters[i], clusters[mate]);
+                let bounds = clusters[i].bounds().union(clusters[mate].bounds());
                 next[to] = Node::inner(&bounds, num::index(first + pair));
                 pair += 2;
             }

@@ -6,6 +6,7 @@
 //! the tree does not depend on the number of threads.
 
 use super::draft::Draft;
+use super::subtree::{PLACE, Subtree};
 use super::tree::Node;
 use crate::accel::{BuildCx, BuildError};
 use crate::geometry::{Aabb, num};
@@ -58,32 +59,13 @@ impl Limits {
 /// Triangles below which a subtree is built by one thread.
 const FORK: usize = 4096;
 
-/// A node that is written once its children are.
-const PLACE: Node = Node::leaf(&Aabb::EMPTY, 0, 1);
-
-/// A subtree whose upper part is still linked.
-enum Subtree {
-    Fork(Box<(Self, Self)>),
-    /// The root is at 0; children and references are numbered within the draft.
-    List(Draft),
-}
-
-impl Subtree {
-    fn bounds(&self) -> Aabb {
-        match self {
-            Self::Fork(children) => children.0.bounds().union(children.1.bounds()),
-            Self::List(list) => list.nodes[0].bounds(),
-        }
-    }
-}
-
 /// Builds over some triangles, at least one; called on the pool.
 ///
 /// # Errors
 /// Cancelled, or what the divider says.
 pub fn build<D: Divide>(divider: &D, work: D::Work, limits: Limits, cx: &BuildCx) -> Result<Draft, BuildError> {
     let builder = Builder { divider, limits, cx };
-    Ok(join(builder.subtree(work, 0)?))
+    Ok(builder.subtree(work, 0)?.joined())
 }
 
 struct Builder<'a, D> {
@@ -161,31 +143,4 @@ impl<D: Divide> Builder<'_, D> {
         let (left, right) = self.divider.halve(work);
         Ok(Divided::Two(left, right))
     }
-}
-
-/// Copies the forks and lists into one: a node first, then what is below its left child, then what
-/// is below its right one.
-fn join(tree: Subtree) -> Draft {
-    let (mut nodes, mut refs) = (vec![PLACE], Vec::new());
-    let mut open = vec![(0usize, tree)];
-    while let Some((at, tree)) = open.pop() {
-        match tree {
-            Subtree::Fork(children) => {
-                let left = nodes.len();
-                let bounds = children.0.bounds().union(children.1.bounds());
-                nodes[at] = Node::inner(&bounds, num::index(left));
-                nodes.extend([PLACE; 2]);
-                let (l, r) = *children;
-                open.extend([(left + 1, r), (left, l)]);
-            }
-            Subtree::List(list) => {
-                // The root goes to its place, so its list moves by one less.
-                let (by, from) = (num::index(nodes.len() - 1), num::index(refs.len()));
-                nodes[at] = list.nodes[0].moved(by, from);
-                nodes.extend(list.nodes[1..].iter().map(|node| node.moved(by, from)));
-                refs.extend_from_slice(&list.refs);
-            }
-        }
-    }
-    Draft { nodes, refs }
 }
