@@ -11,6 +11,7 @@ mod failure;
 mod hits;
 mod npy;
 mod output;
+mod plot;
 mod quality;
 mod rays;
 mod render;

@@ -1,5 +1,7 @@
 //! `boxwood scaling`: how builds and rays slow down as a model gets more triangles.
 
+use std::io::Write;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -7,7 +9,8 @@ use serde::Serialize;
 use super::args::{ModelArgs, Size, seconds};
 use super::context::{Context, Model};
 use super::failure::Failure;
-use super::output::{print, print_json};
+use super::output::{OutFile, print, print_json};
+use super::plot::{Curve, Panel, log_log};
 use super::structures::{BuildArgs, Many};
 use super::table::{Table, facts};
 use super::{bar, rays};
@@ -15,7 +18,7 @@ use crate::accel::{BuildCx, BuildError};
 use crate::geometry::num::floor_index;
 use crate::geometry::tri::TestKind;
 use crate::lab::format::{MISSING, count, duration, number};
-use crate::lab::scaling::{BuildRounds, Candidate, Exponent, Scaling, scaling};
+use crate::lab::scaling::{BuildRounds, Candidate, Exponent, Point, Scaling, scaling};
 use crate::lab::{MachineFacts, MeasureOptions, RayKind};
 use crate::scene::builtin::{self, MAX_TRIANGLES, SCHEME};
 use crate::scene::{CameraSpec, Geometry, subdivide};
@@ -56,6 +59,9 @@ pub struct Args {
     cap: f64,
     #[command(flatten)]
     build: BuildArgs,
+    /// Also draw the times over the triangles, on logarithmic axes.
+    #[arg(long, value_name = "OUT.svg")]
+    plot: Option<PathBuf>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -77,6 +83,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let params = args.build.params(entries)?;
     let candidates: Vec<Candidate> =
         entries.iter().copied().zip(params).map(|(entry, params)| Candidate { entry, params }).collect();
+    let plot = args.plot.as_deref().map(OutFile::at).transpose()?;
     let cx = Context::new(args.model.machine, cancel);
     let (geometries, largest) = models(args, &cx)?;
     let camera = CameraSpec::or_first(None, &largest.scene, &largest.geometry, args.size.aspect());
@@ -103,6 +110,10 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         triangles: geometries.iter().map(|g| g.live_count() as u64).collect(),
         structures,
     };
+    if let Some(file) = plot {
+        let svg = log_log(&panels(&outcome)).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
+        file.write(&cx.cancel, |out| out.write_all(svg.as_bytes()))?;
+    }
     if args.json { print_json(&outcome) } else { print(&text(&outcome)) }
 }
 
@@ -153,6 +164,29 @@ fn subdivided(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), 
         geometries.push(Arc::clone(&model.geometry));
     }
     Ok((geometries, model))
+}
+
+/// The times of builds and of rays.
+fn panels(outcome: &Outcome) -> [Panel; 2] {
+    let curves = |secs: fn(&Point) -> f64| {
+        let points = |s: &Scaling| s.points.iter().map(|p| (p.triangles as f64, secs(p))).collect();
+        outcome.structures.iter().map(|s| Curve { id: s.id.clone(), points: points(s) }).collect()
+    };
+    let threads = outcome.machine.threads;
+    [
+        Panel {
+            title: format!("{}: builds, {threads} threads", outcome.model),
+            axes: ["triangles", "seconds of a build"],
+            curves: curves(|p| p.build_secs),
+            guide: ("N log N", |n| n * n.ln()),
+        },
+        Panel {
+            title: format!("{}: {} rays, {threads} threads", outcome.model, outcome.rays.id()),
+            axes: ["triangles", "nanoseconds of a ray"],
+            curves: curves(|p| p.ray_secs * 1e9),
+            guide: ("log N", f64::ln),
+        },
+    ]
 }
 
 fn text(outcome: &Outcome) -> String {
