@@ -71,12 +71,12 @@ impl Triangle {
         }
         let normal = (places[1] - places[0]).cross(places[2] - places[0]);
         let (det, most) = if view.parallel {
-            (normal.z, normal.length())
+            (normal.z, normal.length_squared())
         } else {
-            (normal.dot(places[0]), normal.length() * places[0].length())
+            (normal.dot(places[0]), normal.length_squared() * places[0].length_squared())
         };
-        // The negation also drops what is not a number.
-        if det.abs().partial_cmp(&(EDGE_ON * most)) != Some(std::cmp::Ordering::Greater) {
+        let has_area = det * det > EDGE_ON * EDGE_ON * most; // what is not a number has none
+        if !has_area {
             return None;
         }
         let side = det.signum();
@@ -123,10 +123,10 @@ fn off_screen(corners: &[DVec3; 3]) -> bool {
 fn bounds(view: &View, corners: &[DVec3; 3]) -> [Range<usize>; 2] {
     let at = corners.map(|p| DVec2::new(view.column(p.x / p.z), view.row(p.y / p.z)));
     let (min, max) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]));
-    // Samples are placed in 32 bits.
     let range = |min: f64, max: f64, n: usize| {
+        // Samples are placed in 32 bits. With it the first may be the one after the whole part.
         let slack = 0.01 + 1e-6 * n as f64;
-        floor_index((min - slack).ceil(), n)..floor_index((max + slack).floor() + 1.0, n)
+        floor_index(min - slack + 1.0, n)..floor_index(max + slack + 1.0, n)
     };
     [range(min.y, max.y, view.rows.len()), range(min.x, max.x, view.columns.len())]
 }
@@ -148,7 +148,7 @@ impl Edge {
             let e = self.of.x * view.columns[column] + rest;
             e > 0.0 || (e == 0.0 && self.owner)
         };
-        let crossing = floor_index(view.column(rest * self.inverse).ceil(), span.end).clamp(span.start, span.end);
+        let crossing = floor_index(view.column(rest * self.inverse) + 1.0, span.end).clamp(span.start, span.end);
         let mut at = crossing;
         if self.of.x > 0.0 {
             while at > span.start && inside(at - 1) {
