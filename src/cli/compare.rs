@@ -9,22 +9,27 @@ use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
 use super::quality::QualityArgs;
-use super::structures::{BuildArgs, Many};
-use super::table::{Table, facts};
-use super::{bar, quality, rays, stats};
+use super::structures::{BuildArgs, Racers};
+use super::table::facts;
+use super::{bar, outcome, quality, rays, stats};
 use crate::accel::Accel;
-use crate::lab::format::{MISSING, count, number, ratio};
-use crate::lab::{Contestant, Fairness, MeasureOptions, Quality, RayKind, Report, StructureRow, Timing, is_tie, measure};
-use crate::scene::CameraSpec;
+use crate::lab::format::count;
+use crate::lab::{
+    Contestant, Fairness, MeasureOptions, Quality, RasterRow, RayKind, RaySet, Report, StructureRow, Timing, measure,
+    measure_with_raster,
+};
+use crate::render::raster::Raster;
+use crate::render::{Job, Mode};
+use crate::scene::{Camera, CameraSpec};
 use crate::task::{Cancel, Progress};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
     model: ModelArgs,
-    /// The structures: ids between commas, or all.
+    /// The structures: ids between commas, raster (with primary rays) among them, or all.
     #[arg(long, value_name = "all|ID,ID", default_value = "all")]
-    structures: Many,
+    structures: Racers,
     /// The kinds of rays, between commas: primary, shadow, diffuse, lines (random ones).
     #[arg(long, value_name = "KINDS", value_delimiter = ',', default_value = "primary,shadow,diffuse")]
     rays: Vec<RayKind>,
@@ -65,12 +70,17 @@ pub struct Args {
 struct Comparison<'a> {
     #[serde(flatten)]
     report: &'a Report,
+    raster: Option<&'a RasterRow>,
     fairness: Fairness,
     size: [u32; 2],
 }
 
 pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
-    let Many(entries) = &args.structures;
+    let Racers { entries, raster } = &args.structures;
+    let raster = *raster && args.kinds().contains(&RayKind::Primary);
+    if entries.is_empty() && !raster {
+        return Err(Failure::Input("raster draws what primary rays see: add --rays primary, or a structure".to_owned()));
+    }
     let params = args.build.params(entries)?;
     let cx = Context::new(args.model.machine, cancel);
     let model = cx.load(&args.model.model)?;
@@ -83,13 +93,17 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         structures.push(row);
     }
     let mut report = Report { scene: model.facts(), machine: cx.machine(), structures };
-    if !contestants.is_empty() {
-        time(args, &model, &contestants, &mut report, &cx)?;
+    let mut drawn = None;
+    if !contestants.is_empty() || raster {
+        let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
+        let race = Race { args, model: &model, camera, contestants: &contestants, raster, cx: &cx };
+        drawn = race.run(&mut report)?;
     }
     let fairness = args.options().fairness;
     let size = [args.size.width, args.size.height];
-    let object = Comparison { report: &report, fairness, size };
-    stats::print_report(&report, || if args.json { print_json(&object) } else { print(&text(args, &report)) })
+    let object = Comparison { report: &report, raster: drawn.as_ref(), fairness, size };
+    let say = || if args.json { print_json(&object) } else { print(&text(args, &report, drawn.as_ref())) };
+    if entries.is_empty() { say() } else { stats::print_report(&report, say) }
 }
 
 impl Args {
@@ -104,87 +118,94 @@ impl Args {
     }
 }
 
-/// Measures every kind of ray and puts the outcome into the rows.
-fn time(args: &Args, model: &Model, contestants: &[Contestant], report: &mut Report, cx: &Context) -> Result<(), Failure> {
-    let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
-    let finder = finder(args, model, contestants, cx)?;
-    let mut sets = Vec::new();
-    for kind in &args.kinds() {
-        let (set, memory) = rays::generate(*kind, model, camera, Arc::clone(&finder), args.size, cx)?;
-        let progress = Progress::new();
-        let title = format!("{} rays", kind.id());
-        let timings =
-            bar::watch(&title, &progress, || measure(contestants, &set, &args.options(), &cx.pool, &cx.cancel, &progress))?;
-        for timing in timings {
-            if let Some(row) = report.structures.iter_mut().find(|row| row.id == timing.id) {
-                row.rays.insert(*kind, timing);
+/// Who races on what.
+struct Race<'a> {
+    args: &'a Args,
+    model: &'a Model,
+    camera: Camera,
+    contestants: &'a [Contestant],
+    /// The rasteriser takes part where the rays are primary.
+    raster: bool,
+    cx: &'a Context,
+}
+
+impl Race<'_> {
+    /// Measures every kind of ray and puts the outcome into the rows.
+    fn run(&self, report: &mut Report) -> Result<Option<RasterRow>, Failure> {
+        let finder = self.finder()?;
+        let (mut sets, mut drawn) = (Vec::new(), None);
+        for kind in &self.args.kinds() {
+            let (set, memory) = rays::generate(*kind, self.model, self.camera, Arc::clone(&finder), self.args.size, self.cx)?;
+            let timings = if self.raster && *kind == RayKind::Primary {
+                let (timings, row) = self.with_raster(&set, &finder)?;
+                drawn = Some(row);
+                timings
+            } else {
+                self.watched(&set, |options, progress| {
+                    measure(self.contestants, &set, options, &self.cx.pool, &self.cx.cancel, progress)
+                })?
+            };
+            for timing in timings {
+                if let Some(row) = report.structures.iter_mut().find(|row| row.id == timing.id) {
+                    row.rays.insert(*kind, timing);
+                }
+            }
+            if self.args.how.fit_costs {
+                sets.push((set, memory));
             }
         }
-        if args.how.fit_costs {
-            sets.push((set, memory));
+        if self.args.how.fit_costs && !self.contestants.is_empty() {
+            quality::fit(self.contestants, &sets, &mut report.structures, self.cx)?;
         }
+        Ok(drawn)
     }
-    if args.how.fit_costs { quality::fit(contestants, &sets, &mut report.structures, cx) } else { Ok(()) }
+
+    /// Measures under a progress bar.
+    fn watched<R>(&self, set: &RaySet, work: impl FnOnce(&MeasureOptions, &Progress) -> R) -> R {
+        let progress = Progress::new();
+        bar::watch(&format!("{} rays", set.kind.id()), &progress, || work(&self.args.options(), &progress))
+    }
+
+    /// Measures the structures and the rasteriser in turns.
+    fn with_raster(&self, set: &RaySet, finder: &Arc<dyn Accel>) -> Result<(Vec<Timing>, RasterRow), Failure> {
+        let size = [self.args.size.width, self.args.size.height];
+        let _memory = self.cx.budget.charge(Raster::bytes(size[0], size[1]))?;
+        let (scene, accel) = (Arc::clone(&self.model.scene), Arc::clone(finder));
+        let job = Job { scene, accel, camera: self.camera, mode: Mode::Shaded };
+        Ok(self.watched(set, |options, progress| {
+            measure_with_raster(self.contestants, set, &job, size, options, &self.cx.pool, &self.cx.cancel, progress)
+        })?)
+    }
+
+    /// What finds the primary hits: the `bvh`, or where that does not fit, any structure that does.
+    fn finder(&self) -> Result<Arc<dyn Accel>, Failure> {
+        // With other parameters it may be as slow as brute force.
+        let usual = |c: &&Contestant| c.id == rays::FINDER && self.args.build.set.is_empty();
+        if let Some(bvh) = self.contestants.iter().find(usual) {
+            return Ok(Arc::clone(&bvh.accel));
+        }
+        rays::finder(self.model, self.cx).or_else(|failure| match (failure, self.contestants.last()) {
+            (Failure::Other(_), Some(other)) => Ok(Arc::clone(&other.accel)),
+            (failure, _) => Err(failure),
+        })
+    }
 }
 
-/// What finds the primary hits: the `bvh`, or where that does not fit, any structure that does.
-fn finder(args: &Args, model: &Model, contestants: &[Contestant], cx: &Context) -> Result<Arc<dyn Accel>, Failure> {
-    // With other parameters it may be as slow as brute force.
-    let usual = |c: &&Contestant| c.id == rays::FINDER && args.build.set.is_empty();
-    if let Some(bvh) = contestants.iter().find(usual) {
-        return Ok(Arc::clone(&bvh.accel));
-    }
-    rays::finder(model, cx).or_else(|failure| match (failure, contestants.last()) {
-        (Failure::Other(_), Some(other)) => Ok(Arc::clone(&other.accel)),
-        (failure, _) => Err(failure),
-    })
-}
-
-fn text(args: &Args, report: &Report) -> String {
+fn text(args: &Args, report: &Report, raster: Option<&RasterRow>) -> String {
     let terms = format!("{}; {} test", args.options().fairness.label(), args.build.test.id());
-    let head = facts(&[stats::head(report), vec![("terms", terms)]].concat());
-    let mut out = format!("{head}\n{}\n{}", stats::structures(report), quality::text(report));
+    let mut out = facts(&[stats::head(report), vec![("terms", terms)]].concat());
+    if !report.structures.is_empty() {
+        out += &format!("\n{}\n{}", stats::structures(report), quality::text(report));
+    }
     for kind in &args.kinds() {
         let timing = |row: &StructureRow| Some((row.rays.get(kind)?.clone(), row.quality.clone()?));
         let rows: Vec<(Timing, Quality)> = report.structures.iter().filter_map(timing).collect();
-        let Some(of) = rows.first().map(|(timing, _)| timing.of) else { continue };
+        let raster = raster.filter(|_| *kind == RayKind::Primary);
+        let of = rows.first().map(|(timing, _)| timing.of).or(raster.map(|row| row.count));
+        let Some(of) = of else { continue };
         out += &format!("\n{} rays: {} at {}\n", kind.id(), count(of as u64), args.size);
-        out += &timings(&rows);
+        out += &outcome::table(&rows, raster);
     }
     out + "\nms is the median over rounds of one pass over the rays, ± half the interquartile range.\n\
            LCV is the standard deviation of the leaves that a ray enters. expected: of a random line that nothing cuts short.\n"
-}
-
-/// One line for each structure, and why some traced fewer rays.
-fn timings(rows: &[(Timing, Quality)]) -> String {
-    let fastest = rows.iter().map(|(timing, _)| timing).max_by(|a, b| a.mrays_per_sec.total_cmp(&b.mrays_per_sec));
-    let (of_time, of_counts) = (["structure", "ms", "±", "rounds", "Mrays/s", "time", "hits"], ["nodes/ray", "expected"]);
-    let mut table = Table::new(&[&of_time[..], &of_counts, &["tests/ray", "expected", "LCV"]].concat());
-    let mut notes = String::new();
-    for (row, quality) in rows {
-        let time = match fastest {
-            Some(best) if std::ptr::eq(best, row) => "fastest".to_owned(),
-            Some(best) if is_tie(best, row) => "tie".to_owned(),
-            Some(best) => ratio(best.mrays_per_sec / row.mrays_per_sec),
-            None => MISSING.to_owned(),
-        };
-        table.row(vec![
-            row.id.clone(),
-            number(row.secs_median * 1e3),
-            number(row.secs_half_iqr * 1e3),
-            count(row.rounds as u64),
-            number(row.mrays_per_sec),
-            time,
-            count(row.hits),
-            number(row.nodes_per_ray),
-            number(quality.expected_nodes),
-            number(row.prims_per_ray),
-            number(quality.expected_tests),
-            number(row.lcv),
-        ]);
-        if let Some(why) = &row.capped {
-            notes += &format!("{}: {why}\n", row.id);
-        }
-    }
-    table.render() + &notes
 }

@@ -10,6 +10,7 @@ mod context;
 mod failure;
 mod hits;
 mod npy;
+mod outcome;
 mod output;
 mod plot;
 mod quality;

@@ -6,6 +6,7 @@ use super::failure::Failure;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
+use crate::lab::RasterRow;
 
 /// How structures are built.
 #[derive(Debug, clap::Args)]
@@ -50,6 +51,27 @@ impl FromStr for Many {
             }
         }
         Ok(Self(chosen))
+    }
+}
+
+/// What takes part in a comparison: structures, and the rasteriser.
+#[derive(Clone, Debug)]
+pub struct Racers {
+    pub entries: Vec<&'static Entry>,
+    pub raster: bool,
+}
+
+impl FromStr for Racers {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let (raster, ids): (Vec<&str>, Vec<&str>) = s.split(',').map(str::trim).partition(|id| *id == RasterRow::ID);
+        let raster = !raster.is_empty() || s == "all";
+        if ids.is_empty() {
+            return Ok(Self { entries: Vec::new(), raster });
+        }
+        let Many(entries) = ids.join(",").parse().map_err(|why| format!("{why}, and {}", RasterRow::ID))?;
+        Ok(Self { entries, raster })
     }
 }
 
@@ -104,6 +126,16 @@ mod tests {
         assert_eq!(ids("bvh, grid,bvh"), Ok(vec!["bvh", "grid"]));
         assert_eq!(ids("all").map(|all| all.len()), Ok(registry::ALL.len()));
         assert!(ids("bvh,oak").expect_err("unknown").contains("brute, bound, bvh"));
+    }
+
+    #[test]
+    fn the_rasteriser_is_named_among_structures() {
+        let racers = |s: &str| s.parse::<Racers>().map(|r| (r.entries.iter().map(|e| e.id).collect::<Vec<_>>(), r.raster));
+        assert_eq!(racers("raster, bvh"), Ok((vec!["bvh"], true)));
+        assert_eq!(racers("bvh"), Ok((vec!["bvh"], false)));
+        assert_eq!(racers("raster"), Ok((vec![], true)));
+        assert_eq!(racers("all").map(|(ids, raster)| (ids.len(), raster)), Ok((registry::ALL.len(), true)));
+        assert!(racers("raster,oak").expect_err("unknown").ends_with("and raster"));
     }
 
     #[test]

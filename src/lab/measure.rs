@@ -1,7 +1,6 @@
 //! Fair timing: every contestant traces the same rays, on the same threads, in turns.
 //!
-//! A round of a contestant is one pass over the rays. Rounds are interleaved A B C, B C A, C A B,
-//! so that whatever drifts meanwhile (clock speed, temperature, another program) meets everybody.
+//! A round of a contestant is one pass over the rays. Rounds are interleaved ([`turns`]).
 //! A contestant leaves when it has its rounds and its seconds; the first, untimed round warms up
 //! caches and pages. A structure that is too slow for that traces an evenly spread part of the rays.
 
@@ -16,6 +15,7 @@ use super::format::{count, duration};
 use super::rays::RaySet;
 use super::sample::pick;
 use super::timing::Timing;
+use super::turns::{self, DONE, Racer};
 use crate::accel::{Accel, Mode};
 use crate::geometry::Ray;
 use crate::task::{Cancel, Cancelled, Pool, Progress};
@@ -84,25 +84,29 @@ pub fn measure(
     cancel: &Cancel,
     progress: &Progress,
 ) -> Result<Vec<Timing>, Cancelled> {
+    measure_beside(contestants, None, set, options, pool, cancel, progress)
+}
+
+/// The same, with one more that takes its turn among them, warmed up already.
+pub(super) fn measure_beside(
+    contestants: &[Contestant],
+    other: Option<&mut dyn Racer>,
+    set: &RaySet,
+    options: &MeasureOptions,
+    pool: &Pool,
+    cancel: &Cancel,
+    progress: &Progress,
+) -> Result<Vec<Timing>, Cancelled> {
     let lanes = contestants.len() as u64;
     progress.start("warm up", lanes);
     let mut all =
         contestants.iter().map(|c| Lane::warmed_up(c, set, options, pool, cancel, progress)).collect::<Result<Vec<_>, _>>()?;
 
-    progress.start("measure", lanes * DONE);
-    for first in 0.. {
-        if all.iter().all(|lane| lane.share_done(options) >= DONE) {
-            break;
-        }
-        for i in 0..all.len() {
-            let lane = &mut all[(first + i) % contestants.len()];
-            let before = lane.share_done(options);
-            if before < DONE {
-                lane.round(set.mode, pool, cancel)?;
-                progress.advance(lane.share_done(options) - before);
-            }
-        }
-    }
+    let mut racers: Vec<&mut dyn Racer> = Vec::new();
+    racers.extend(all.iter_mut().map(|lane| lane as &mut dyn Racer));
+    racers.extend(other.map(|other| other as &mut dyn Racer));
+    progress.start("measure", racers.len() as u64 * DONE);
+    turns::take(&mut racers, options, pool, cancel, progress)?;
 
     progress.start("count", lanes);
     let rows = all.iter().map(|lane| lane.counted(set, pool, cancel, progress)).collect();
@@ -110,14 +114,12 @@ pub fn measure(
     rows
 }
 
-/// What [`Lane::share_done`] is of a lane that has enough.
-const DONE: u64 = 1000;
-
 /// A contestant with its rays and the rounds it has done.
 struct Lane<'a> {
     contestant: &'a Contestant,
     /// The whole set, or a part of it.
     rays: Cow<'a, [Ray]>,
+    mode: Mode,
     of: usize,
     secs_per_ray: f64,
     hits: u64,
@@ -145,24 +147,7 @@ impl<'a> Lane<'a> {
             hits = trace_all(contestant, &rays, set.mode, pool, cancel)?;
         }
         progress.advance(1);
-        Ok(Self { contestant, rays, of: set.rays.len(), secs_per_ray, hits, secs: Vec::new() })
-    }
-
-    fn round(&mut self, mode: Mode, pool: &Pool, cancel: &Cancel) -> Result<(), Cancelled> {
-        let start = Instant::now();
-        trace_all(self.contestant, &self.rays, mode, pool, cancel)?;
-        self.secs.push(start.elapsed().as_secs_f64());
-        Ok(())
-    }
-
-    /// How much of what it needs it has, in thousandths; no rays need nothing.
-    fn share_done(&self, options: &MeasureOptions) -> u64 {
-        if self.rays.is_empty() {
-            return DONE;
-        }
-        let rounds = self.secs.len() as f64 / options.min_rounds.max(1) as f64;
-        let secs = self.secs.iter().sum::<f64>() / options.min_secs.max(1e-9);
-        crate::geometry::num::floor_index(rounds.min(secs).min(1.0) * 1000.0, 1000) as u64
+        Ok(Self { contestant, rays, mode: set.mode, of: set.rays.len(), secs_per_ray, hits, secs: Vec::new() })
     }
 
     fn counted(&self, set: &RaySet, pool: &Pool, cancel: &Cancel, progress: &Progress) -> Result<Timing, Cancelled> {
@@ -189,6 +174,20 @@ impl<'a> Lane<'a> {
         let why =
             || format!("{} of {} rays, spread evenly: all would take {}", count(part as u64), count(of as u64), duration(whole));
         (part < of).then(|| why() + " a round")
+    }
+}
+
+impl Racer for Lane<'_> {
+    fn round(&mut self, pool: &Pool, cancel: &Cancel) -> Result<(), Cancelled> {
+        let start = Instant::now();
+        trace_all(self.contestant, &self.rays, self.mode, pool, cancel)?;
+        self.secs.push(start.elapsed().as_secs_f64());
+        Ok(())
+    }
+
+    fn share_done(&self, options: &MeasureOptions) -> u64 {
+        // No rays need nothing.
+        if self.rays.is_empty() { DONE } else { turns::share(&self.secs, options) }
     }
 }
 

@@ -7,6 +7,7 @@ mod film;
 mod mode;
 mod picture;
 pub mod progressive;
+pub mod raster;
 pub mod sampler;
 mod shade;
 pub mod spawn;

@@ -28,6 +28,13 @@ pub fn in_pixel(x: u32, y: u32, sample: u32) -> Vec2 {
     if sample == 0 { Vec2::splat(0.5) } else { Sampler::new(x, y, sample).pair(0) }
 }
 
+/// Where a point of a picture, in pixels from its upper left corner, lies on the screen: (-1, -1) is
+/// the lower left corner, (1, 1) the upper right.
+pub fn on_screen(at: Vec2, size: Vec2) -> Vec2 {
+    let at = at / size;
+    Vec2::new(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y)
+}
+
 /// A direction about the normal, by cosine, from two numbers (Malley's method); of unit length if
 /// the normal is.
 pub fn cosine_direction(normal: glam::Vec3, u: Vec2) -> glam::Vec3 {

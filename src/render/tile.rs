@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use super::film::Band;
-use super::sampler::{Sampler, in_pixel};
+use super::sampler::{Sampler, in_pixel, on_screen};
 use super::shade::{occlusion_ray, shade};
 use super::{Film, Mode};
 use crate::accel::probe::Counts;
@@ -43,8 +43,8 @@ impl Job {
         let frame = self.camera.frame();
         let size = Vec2::new(width as f32, height as f32);
         let ray = |x: u32, y: u32| {
-            let at = (Vec2::new(x as f32, y as f32) + in_pixel(x, y, sample)) / size;
-            self.camera.ray(&frame, Vec2::new(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y), size.x / size.y)
+            let at = Vec2::new(x as f32, y as f32) + in_pixel(x, y, sample);
+            self.camera.ray(&frame, on_screen(at, size), size.x / size.y)
         };
         rows.flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| ray(x, y)).collect()
     }

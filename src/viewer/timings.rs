@@ -1,17 +1,20 @@
-//! The table of timings: one row a structure, filled by builds and by measuring.
+//! The table of timings: one row a structure, filled by builds and by measuring, and one for the
+//! rasteriser.
 
 use std::collections::BTreeMap;
 
 use super::kept::{Built, Key};
 use super::workers::Measured;
 use crate::accel::registry::{self, Entry};
-use crate::lab::{Costs, Timing, is_tie};
+use crate::lab::{Costs, RasterRow, Timing, is_tie};
 use crate::scene::Camera;
 
 /// The table.
 #[derive(Clone, Debug, Default)]
 pub struct Timings {
     rows: BTreeMap<&'static str, Row>,
+    /// The same view rasterised.
+    pub raster: Option<RasterRow>,
     /// The view that was measured.
     pub view: Option<(Camera, [u32; 2])>,
 }
@@ -56,6 +59,7 @@ impl Timings {
         for (id, why) in &measured.failed {
             self.rows.insert(id, Row { failed: Some(why.clone()), ..Row::default() });
         }
+        self.raster.clone_from(&measured.raster);
         self.view = measured.view;
     }
 

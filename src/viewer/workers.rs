@@ -12,8 +12,8 @@ use crate::accel::{Accel, BuildCx, BuildError, Cell};
 use crate::geometry::Ray;
 use crate::job::Job;
 use crate::lab::{
-    Contestant, Costs, Enough, FitOptions, MeasureOptions, Quality, QualityOptions, RayKind, RaySet, SahCurves, Timing,
-    fit_costs, measure, sah_curves,
+    Contestant, Costs, Enough, FitOptions, MeasureOptions, Quality, QualityOptions, RasterRow, RayKind, RaySet, SahCurves,
+    Timing, fit_costs, measure_with_raster, sah_curves,
 };
 use crate::render;
 use crate::scene::{Camera, Geometry, LoadError, Scene};
@@ -127,6 +127,8 @@ pub struct Measured {
     pub built: Vec<Built>,
     /// Their timings, in the same order.
     pub timings: Vec<Timing>,
+    /// The rasteriser's, of the same view.
+    pub raster: Option<RasterRow>,
     /// What steps and tests cost in each, as far as that could be told.
     pub costs: Vec<Option<Costs>>,
     /// Structures that could not be built, and why.
@@ -172,7 +174,10 @@ pub fn measure_all(shared: &Shared, plan: Plan) -> std::io::Result<Measuring> {
         let rays = RaySet::generate(RayKind::Primary, &plan.view, width, height, &pool, cancel)?;
         let contestant = |b: &Built| Contestant { id: b.key.entry.id.to_owned(), accel: Arc::clone(&b.accel) };
         let contestants: Vec<Contestant> = measured.built.iter().map(contestant).collect();
-        measured.timings = measure(&contestants, &rays, &MeasureOptions::default(), &pool, cancel, progress)?;
+        let options = MeasureOptions::default();
+        let race = measure_with_raster(&contestants, &rays, &plan.view, plan.size_px, &options, &pool, cancel, progress);
+        let (timings, raster) = race?;
+        (measured.timings, measured.raster) = (timings, Some(raster));
         // Lines beside the view's rays: the more the rays differ, the better the costs are told apart.
         let lines = RaySet::lines(plan.view.accel.geometry(), 1 << 16, &pool, cancel)?;
         let options = FitOptions { cap_secs: 2.0, ..FitOptions::default() };

@@ -1,6 +1,6 @@
 //! `scenes`, `stats` and `compare`: the schema, and tables for people.
 
-use crate::support::{Folder, good, json};
+use crate::support::{Folder, bad, good, json};
 use boxwood::accel::registry;
 use boxwood::scene::builtin;
 use serde_json::{Value, json};
@@ -66,7 +66,8 @@ fn stats_prints_a_table() {
 fn compare_follows_the_schema() {
     let args = ["compare", "builtin:cornell-box", "--structures", "brute,bvh,grid", "--size", "48x32", "--repeat", "2"];
     let report = json(&[&args[..], &["--secs", "0.02", "--threads", "2", "--json"]].concat());
-    assert_keys(&report, &["scene", "machine", "structures", "fairness"]);
+    assert_keys(&report, &["scene", "machine", "structures", "fairness", "raster"]);
+    assert!(report["raster"].is_null(), "not asked for");
     assert_eq!((ids(&report), &report["fairness"]), (vec!["brute", "bvh", "grid"], &json!("like-for-like")));
     for row in report["structures"].as_array().expect("a list") {
         for kind in ["primary", "shadow", "diffuse"] {
@@ -87,6 +88,33 @@ fn compare_prints_one_table_for_each_kind_and_names_its_terms() {
         assert!(table.contains(word), "{word} is not in\n{table}");
     }
     assert!(!table.contains("diffuse rays"));
+}
+
+#[test]
+fn the_rasteriser_stands_beside_the_structures() {
+    let args = ["compare", "builtin:cornell-box", "--size", "48x32", "--repeat", "2", "--secs", "0.01", "--structures"];
+    let report = json(&[&args[..], &["raster,bvh", "--rays", "primary,shadow", "--json"]].concat());
+    assert_eq!(ids(&report), ["bvh"]);
+    let (raster, traced) = (&report["raster"], &report["structures"][0]["rays"]["primary"]);
+    assert_keys(raster, &["secs", "secs_spread", "mrays_per_sec", "covered", "overdraw", "set_up", "culled", "crossing"]);
+    assert!(raster["rounds"].as_u64() >= Some(2) && raster["secs"].as_f64() > Some(0.0));
+    let number = |value: &Value| value.as_u64().expect("a number");
+    assert_eq!((number(&raster["count"]), number(&raster["differing"]["other"])), (48 * 32, 0));
+    assert!(number(&raster["hits"]).abs_diff(number(&traced["hits"])) <= number(&raster["differing"]["edge"]));
+    assert!(number(&raster["covered"]) >= number(&raster["hits"]) && number(&raster["set_up"]) > 0);
+
+    let table = good(&[&args[..], &["bvh,raster", "--rays", "primary,shadow"]].concat());
+    for word in ["\nraster  ", "pixels covered by", "overdraw", "edge pixels differ"] {
+        assert_eq!(table.matches(word).count(), 1, "{word:?} in\n{table}");
+    }
+    let alone = good(&[&args[..], &["raster", "--rays", "primary"]].concat());
+    assert!(alone.contains("\nraster  ") && !alone.contains("SAH"), "{alone}");
+    for (structures, rays) in [("bvh", "primary"), ("raster,bvh", "shadow")] {
+        let table = good(&[&args[..], &[structures, "--rays", rays]].concat());
+        assert!(!table.contains("raster"), "{table}");
+    }
+    let wrong = bad(&[&args[..], &["raster", "--rays", "diffuse"]].concat(), 2);
+    assert!(wrong.contains("--rays primary"), "{wrong}");
 }
 
 #[test]

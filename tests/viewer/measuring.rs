@@ -36,7 +36,11 @@ fn measuring_fills_every_row_and_says_of_which_view() {
         assert!(timing.nodes_per_ray + timing.prims_per_ray > 0.0, "{}", entry.id);
         assert!(w.says(entry.name));
     }
-    assert!(w.texts().iter().all(|t| t.text != "–"), "every cell of the table is filled");
+    let raster = w.state().timings.raster.as_ref().expect("measured, too");
+    assert!(raster.rounds >= 5 && raster.covered >= raster.hits && raster.differing.other == 0, "{raster:?}");
+    // Every cell of the table is filled, but for what only structures have, if that row is in view.
+    let missing = w.texts().iter().filter(|t| t.text == "–").count();
+    assert_eq!(missing, if w.says("Raster") { 4 } else { 0 });
 }
 
 #[test]
@@ -49,7 +53,7 @@ fn measuring_can_be_cancelled_and_rendering_goes_on() {
     w.click(Role::Button, "Cancel");
     let answered = stop.elapsed();
     assert!(w.state().measuring.is_none() && answered < Duration::from_millis(100), "{answered:?}");
-    assert!(w.state().timings.view.is_none());
+    assert!(w.state().timings.view.is_none() && w.state().timings.raster.is_none());
     assert!(w.state().timings.rows().all(|(_, row)| row.timing.is_none()));
     assert!(w.has(Role::Button, "Measure"));
     // The renderer rests until the measurement has really ended.

@@ -1,10 +1,11 @@
-//! The table of timings, one row a structure, on the same rays.
+//! The table of timings, one row a structure, on the same rays, and the same view rasterised.
 
 use eframe::egui::{self, Align, Layout, ProgressBar, RichText, ScrollArea, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 use super::{Commands, heading};
-use crate::accel::registry::Entry;
+use crate::accel::registry::{Entry, Family};
+use crate::lab::{RasterRow, Timing};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::marks;
@@ -81,6 +82,7 @@ fn table(ui: &mut Ui, state: &State) {
             for (entry, row) in state.timings.rows() {
                 body.row(theme::ROW, |mut cells| cells_of(&mut cells, state, entry, &row));
             }
+            body.row(theme::ROW, |mut cells| raster(&mut cells, state.timings.raster.as_ref()));
         });
 }
 
@@ -98,21 +100,56 @@ fn cells_of(cells: &mut TableRow<'_, '_>, state: &State, entry: &Entry, row: &Ro
     value(cells, row.build_secs.map(format::duration), not_built);
     value(cells, row.bytes.map(format::bytes), not_built);
     let timing = row.timing.as_ref();
-    // A capped structure traced a part of the rays: scaled up to all of them.
-    let one_sample = timing.map(|t| t.secs_median * t.of as f64 / t.rays.max(1) as f64);
-    value(cells, one_sample.map(format::duration), why);
+    value(cells, timing.map(one_sample), why);
     cells.col(|ui| {
         let Some(t) = timing else { return missing(ui, why) };
-        let spread = t.mrays_per_sec * t.secs_half_iqr / t.secs_median.max(f64::MIN_POSITIVE);
         let fastest = state.timings.is_fastest(t);
         let tie = fastest && state.timings.fastest().is_some_and(|f| f.id != t.id);
-        let text = format!("{} ±{}{}", format::number(t.mrays_per_sec), format::number(spread), if tie { " tie" } else { "" });
+        let text = format!("{}{}", rate(t), if tie { " tie" } else { "" });
         let text = if fastest { RichText::new(text).strong() } else { RichText::new(text) };
         let note = t.capped.as_deref().map(|c| format!(" {c}")).unwrap_or_default();
         ui.label(text).on_hover_text(format!("{} rounds of {} rays.{note}", t.rounds, format::count(t.rays as u64)));
     });
     value(cells, timing.map(|t| format::number(t.nodes_per_ray)), why);
     value(cells, timing.map(|t| format::number(t.prims_per_ray)), why);
+}
+
+/// The time of one sample for each pixel. A capped structure traced a part of the rays: scaled up to
+/// all of them.
+fn one_sample(t: &Timing) -> String {
+    format::duration(t.secs_median * t.of as f64 / t.rays.max(1) as f64)
+}
+
+/// Rays a second and their spread.
+fn rate(t: &Timing) -> String {
+    let spread = t.mrays_per_sec * t.secs_half_iqr / t.secs_median.max(f64::MIN_POSITIVE);
+    format!("{} ±{}", format::number(t.mrays_per_sec), format::number(spread))
+}
+
+/// The row of the rasteriser, which builds nothing and visits no nodes.
+fn raster(cells: &mut TableRow<'_, '_>, row: Option<&RasterRow>) {
+    let drawn = row.map(|row| {
+        let (covered, overdraw) = (format::count(row.covered), format::number(row.overdraw));
+        let edge = format::count(row.differing.edge);
+        format!(": {covered} pixels covered, overdraw {overdraw}, {edge} edge pixels differ")
+    });
+    let help = format!("Time to rasterise the same view with a z-buffer{}.", drawn.unwrap_or_default());
+    cells.col(|ui| {
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            marks::dot(ui, Family::Brute);
+            ui.label("Raster").on_hover_text(&help);
+        });
+    });
+    let (none, timing) = ("A rasteriser has no structure.", row.map(RasterRow::timing));
+    value(cells, None, none);
+    value(cells, None, none);
+    value(cells, timing.as_ref().map(one_sample), "Not measured. Press Measure.");
+    cells.col(|ui| {
+        let Some(t) = &timing else { return missing(ui, "Not measured. Press Measure.") };
+        ui.label(rate(t)).on_hover_text(&help);
+    });
+    value(cells, None, none);
+    value(cells, None, none);
 }
 
 fn value(cells: &mut TableRow<'_, '_>, text: Option<String>, why_missing: &str) {
