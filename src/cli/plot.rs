@@ -84,7 +84,8 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
         let filled = i % 2 == 0;
         let dot = move |at: (i32, i32)| Circle::new(at, 4, if filled { color.filled() } else { color.stroke_width(2) });
         let line = chart.draw_series(LineSeries::new(points.clone(), color.stroke_width(2)))?;
-        let key = move |(x, y)| EmptyElement::at((x, y)) + PathElement::new([(0, 0), (20, 0)], color.stroke_width(2)) + dot((10, 0));
+        let key =
+            move |(x, y)| EmptyElement::at((x, y)) + PathElement::new([(0, 0), (20, 0)], color.stroke_width(2)) + dot((10, 0));
         line.label(&curve.id).legend(key);
         chart.draw_series(points.map(|p| EmptyElement::at(p) + dot((0, 0))))?;
     }

@@ -16,33 +16,18 @@ pub struct Slice<'a> {
 }
 
 impl<'a> Slice<'a> {
-    /// Of a whole list.
+    /// Of a whole list; a long one is looked through in parallel.
     pub fn new(prims: &'a mut [PrimBox]) -> Self {
-        let sides = prims.iter().fold(Side::EMPTY, Side::with);
+        let sides = Side::of_all(prims);
         Self { prims, bounds: sides.bounds, centres: sides.centres }
     }
 
     /// Moves what goes left to the front; the boxes of both sides are gathered on the way. `None` of
     /// the two may be empty.
-    pub fn partition(self, goes_left: impl Fn(&PrimBox) -> bool) -> (Self, Self) {
-        let (mut lo, mut hi) = (0, self.prims.len());
-        let (mut left, mut right) = (Side::EMPTY, Side::EMPTY);
-        loop {
-            while lo < hi && goes_left(&self.prims[lo]) {
-                left = left.with(&self.prims[lo]);
-                lo += 1;
-            }
-            while lo < hi && !goes_left(&self.prims[hi - 1]) {
-                right = right.with(&self.prims[hi - 1]);
-                hi -= 1;
-            }
-            if lo >= hi {
-                break;
-            }
-            self.prims.swap(lo, hi - 1);
-        }
-        debug_assert!(0 < lo && lo < self.prims.len(), "a split with an empty side");
-        let (l, r) = self.prims.split_at_mut(lo);
+    pub fn partition(self, goes_left: impl Fn(&PrimBox) -> bool + Sync) -> (Self, Self) {
+        let (count, [left, right]) = partition(self.prims, &goes_left);
+        debug_assert!(0 < count && count < self.prims.len(), "a split with an empty side");
+        let (l, r) = self.prims.split_at_mut(count);
         (left.of(l), right.of(r))
     }
 
@@ -61,6 +46,47 @@ impl<'a> Slice<'a> {
     }
 }
 
+/// Triangles from which on a list is handled in two halves, side by side.
+const PARALLEL: usize = 1 << 15;
+
+/// How many go left, and what is gathered of both sides. Halves are partitioned side by side, then
+/// what is on the wrong side of the place where they meet changes places:
+///
+/// ```text
+/// L1 L1 L1 R1 R1 | L2 R2 R2 R2    ─►    L1 L1 L1 L2 R1 | R1 R2 R2 R2
+/// ```
+fn partition(prims: &mut [PrimBox], goes_left: &(impl Fn(&PrimBox) -> bool + Sync)) -> (usize, [Side; 2]) {
+    if prims.len() < PARALLEL {
+        return partition_here(prims, goes_left);
+    }
+    let middle = prims.len() / 2;
+    let (first, second) = prims.split_at_mut(middle);
+    let ((l1, a), (l2, b)) = rayon::join(|| partition(first, goes_left), || partition(second, goes_left));
+    let misplaced = (middle - l1).min(l2);
+    first[l1..l1 + misplaced].swap_with_slice(&mut second[l2 - misplaced..l2]);
+    (l1 + l2, [a[0].join(b[0]), a[1].join(b[1])])
+}
+
+/// From both ends, by one thread.
+fn partition_here(prims: &mut [PrimBox], goes_left: &impl Fn(&PrimBox) -> bool) -> (usize, [Side; 2]) {
+    let (mut lo, mut hi) = (0, prims.len());
+    let (mut left, mut right) = (Side::EMPTY, Side::EMPTY);
+    loop {
+        while lo < hi && goes_left(&prims[lo]) {
+            left = left.with(&prims[lo]);
+            lo += 1;
+        }
+        while lo < hi && !goes_left(&prims[hi - 1]) {
+            right = right.with(&prims[hi - 1]);
+            hi -= 1;
+        }
+        if lo >= hi {
+            return (lo, [left, right]);
+        }
+        prims.swap(lo, hi - 1);
+    }
+}
+
 /// What is gathered of one side of a partition.
 #[derive(Clone, Copy)]
 struct Side {
@@ -74,6 +100,19 @@ impl Side {
     #[inline(always)]
     fn with(self, prim: &PrimBox) -> Self {
         Self { bounds: self.bounds.union(prim.bounds()), centres: self.centres.with(prim.centre_twice()) }
+    }
+
+    fn join(self, other: Self) -> Self {
+        Self { bounds: self.bounds.union(other.bounds), centres: self.centres.union(other.centres) }
+    }
+
+    fn of_all(prims: &[PrimBox]) -> Self {
+        if prims.len() < PARALLEL {
+            return prims.iter().fold(Self::EMPTY, Self::with);
+        }
+        let (first, second) = prims.split_at(prims.len() / 2);
+        let (a, b) = rayon::join(|| Self::of_all(first), || Self::of_all(second));
+        a.join(b)
     }
 
     fn of(self, prims: &mut [PrimBox]) -> Slice<'_> {
@@ -120,5 +159,34 @@ impl<'a, H: Heuristic> Divide for InPlace<'a, H> {
     fn leaf(&self, slice: Slice<'a>, refs: &mut Vec<PrimRef>) -> Aabb {
         refs.extend(slice.prims.iter().map(PrimBox::prim));
         slice.bounds.aabb()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::num;
+    use glam::Vec3;
+
+    #[test]
+    fn long_lists_are_partitioned_as_short_ones_are() {
+        for (n, share) in [(PARALLEL - 1, 0.5), (4 * PARALLEL + 3, 0.02), (4 * PARALLEL + 3, 0.5), (3 * PARALLEL, 0.98)] {
+            let x = |i: usize| (i as f32 * 0.618_034).fract();
+            let mut prims: Vec<PrimBox> = (0..n)
+                .map(|i| PrimBox::new(&Bounds::from(&Aabb { min: Vec3::X * x(i), max: Vec3::ONE * x(i) }), num::index(i)))
+                .collect();
+            let goes_left = |p: &PrimBox| x(p.prim() as usize) < share;
+            let expected = prims.iter().filter(|p| goes_left(p)).count();
+            let (left, right) = Slice::new(&mut prims).partition(goes_left);
+            assert_eq!(left.prims.len(), expected, "{n} {share}");
+            assert!(left.prims.iter().all(goes_left) && !right.prims.iter().any(goes_left));
+            for side in [left, right] {
+                let again = Side::of_all(side.prims);
+                assert_eq!((side.bounds.aabb(), side.centres.aabb()), (again.bounds.aabb(), again.centres.aabb()));
+            }
+            let mut all: Vec<u32> = prims.iter().map(PrimBox::prim).collect();
+            all.sort_unstable();
+            assert!(all.iter().enumerate().all(|(i, p)| *p as usize == i));
+        }
     }
 }

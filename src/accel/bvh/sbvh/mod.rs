@@ -49,7 +49,7 @@ impl Work {
         Self { refs, bounds, centres, allowance }
     }
 
-    fn apart(self, goes_left: impl Fn(&PrimBox) -> bool) -> (Self, Self) {
+    fn apart(self, goes_left: impl Fn(&PrimBox) -> bool + Sync) -> (Self, Self) {
         let Self { mut refs, bounds, centres, allowance } = self;
         let (left, right) = Slice { prims: &mut refs, bounds, centres }.partition(goes_left);
         let (left, right) = (left.kept(), right.kept());
