@@ -6,7 +6,8 @@ mod common;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use boxwood::scene::{LoadCx, Scene, open};
+use boxwood::scene::{Geometry, LoadCx, Projection, Scene, open};
+use glam::Vec3;
 
 /// Where the list counts something else than triangles.
 const COUNTED_OTHERWISE: &[(&str, u64)] = &[
@@ -151,4 +152,23 @@ fn real_models() {
     }
     table.iter().for_each(|(kind, n)| println!("{n:4}  {kind}"));
     assert!(wrong.is_empty(), "{} of {} models:\n{}", wrong.len(), models.len(), wrong.join("\n"));
+}
+
+/// The file says twice where its camera is: in glTF, and in an extension as eye and point of interest.
+#[test]
+fn the_camera_of_a_real_file_looks_where_its_author_did() {
+    let path = folder().join("tinygltf/Extensions-overwrite-issue261/issue-261.gltf");
+    let (true, Some(path)) = (path.exists(), path.to_str()) else {
+        let remedy = format!("Put tinygltf's issue-261.gltf at {} to run it.", path.display());
+        return common::left_out("model files", "the camera of a real file", &remedy);
+    };
+    let cx = LoadCx::unattended();
+    let scene = open(path, &cx).expect("a model");
+    let geometry = Geometry::new(&scene, &cx).expect("a model");
+    let camera = scene.first_camera(geometry.world_bounds(), 4.0 / 3.0);
+    assert!(camera.eye.distance(Vec3::new(0.972_907_4, 1.259_243_8, 2.419_918_8)) < 1e-5, "{camera:?}");
+    let towards = (Vec3::new(0.134_265_48, -0.143_561_38, 0.037_264_325) - camera.eye).normalize_or_zero();
+    assert!(camera.frame().forward.dot(towards) > 0.9999, "{camera:?}");
+    assert!(camera.frame().up.dot(Vec3::Y) > 0.8 && camera.target.length() < 0.3, "{camera:?}");
+    assert_eq!(camera.projection, Projection::Perspective { fov_y: 0.927_295_2 });
 }

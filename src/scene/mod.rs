@@ -6,6 +6,7 @@ pub mod builtin;
 mod camera;
 mod camera_spec;
 mod error;
+mod first_view;
 mod geometry;
 pub mod load;
 mod material;
@@ -16,6 +17,7 @@ mod subdivide;
 pub use camera::{Camera, Frame, Projection};
 pub use camera_spec::CameraSpec;
 pub use error::{LoadError, Reason};
+pub use first_view::{FirstView, StoredCamera};
 pub use geometry::{Geometry, PrimRef};
 pub use material::Material;
 pub use mesh::{Instance, Mesh};
@@ -38,7 +40,7 @@ pub struct Scene {
     /// The direction that is up: what the orbiting camera keeps upright.
     pub up: Vec3,
     /// A view that suits the model; without one the whole model is framed.
-    pub camera: Option<Camera>,
+    pub camera: Option<FirstView>,
     /// What could not be read, or was left out, in words for the user. Each is one sentence.
     pub warnings: Vec<String>,
 }
@@ -52,15 +54,10 @@ impl Scene {
     /// The view to begin with: the scene's own, or all of `bounds` from a little above. `aspect` is
     /// the picture's width over its height.
     pub fn first_camera(&self, bounds: &crate::geometry::Aabb, aspect: f32) -> Camera {
-        match self.camera {
-            // A parallel view is as wide as it was made; a narrower picture must still show it all.
-            Some(camera) if matches!(camera.projection, Projection::Orthographic { .. }) => camera.reframed(bounds, aspect),
-            Some(camera) => camera,
-            None => {
-                let up = self.up.normalize_or(Vec3::Y);
-                let ahead = if up.z.abs() > 0.9 { Vec3::new(0.6, -1.0, 0.0) } else { Vec3::new(0.6, 0.0, 1.0) };
-                Camera::framing(bounds, ahead + up * 0.55, up, aspect)
-            }
-        }
+        let up = self.up.normalize_or(Vec3::Y);
+        self.camera.and_then(|view| view.camera(bounds, up, aspect)).unwrap_or_else(|| {
+            let ahead = if up.z.abs() > 0.9 { Vec3::new(0.6, -1.0, 0.0) } else { Vec3::new(0.6, 0.0, 1.0) };
+            Camera::framing(bounds, ahead + up * 0.55, up, aspect)
+        })
     }
 }

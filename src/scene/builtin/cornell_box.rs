@@ -3,7 +3,7 @@
 
 use super::fill::{Sizes, extend};
 use crate::geometry::num;
-use crate::scene::{Camera, Instance, LoadCx, Material, Mesh, Projection, Reason, Scene};
+use crate::scene::{Camera, FirstView, Instance, LoadCx, Material, Mesh, Projection, Reason, Scene};
 use glam::{DVec3, Vec3};
 
 /// Four corners in tenths of millimetres, which is what the measurements come in: whole numbers,
@@ -70,7 +70,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
         meshes,
         materials: SURFACES.iter().map(Surface::material).collect(),
         up: Vec3::Y,
-        camera: Some(camera()),
+        camera: Some(FirstView::From(camera())),
         ..Scene::default()
     })
 }

@@ -2,7 +2,7 @@
 //! and followed by eye.
 
 use super::fill::Sizes;
-use crate::scene::{Camera, Instance, LoadCx, Material, Mesh, Projection, Reason, Scene};
+use crate::scene::{Camera, FirstView, Instance, LoadCx, Material, Mesh, Projection, Reason, Scene};
 use glam::Vec3;
 
 type Triangle = [(f32, f32); 3];
@@ -58,12 +58,12 @@ pub(super) fn generate(_triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> 
         meshes,
         materials: GROUPS.iter().map(Group::material).collect(),
         up: Vec3::Y,
-        camera: Some(Camera {
+        camera: Some(FirstView::Whole(Camera {
             eye: target + Vec3::Z * 20.0,
             target,
             up: Vec3::Y,
             projection: Projection::Orthographic { height: 11.0 },
-        }),
+        })),
         ..Scene::default()
     })
 }

@@ -20,7 +20,7 @@ mod teapot;
 mod teapot_in_stadium;
 mod terrain;
 
-use super::{Camera, LoadCx, Projection, Reason, Scene};
+use super::{Camera, FirstView, LoadCx, Projection, Reason, Scene};
 use glam::Vec3;
 use spec::Spec;
 
@@ -90,9 +90,9 @@ pub fn all() -> &'static [Builtin] {
 
 /// A view of `target` from `offset` away, z up. As its angle is the vertical one, what fits by height
 /// is seen in a picture of any shape that is not upright.
-fn view(target: Vec3, offset: Vec3) -> Camera {
+fn view(target: Vec3, offset: Vec3) -> FirstView {
     let projection = Projection::Perspective { fov_y: Camera::DEFAULT_FOV_Y };
-    Camera { eye: target + offset, target, up: Vec3::Z, projection }
+    FirstView::From(Camera { eye: target + offset, target, up: Vec3::Z, projection })
 }
 
 /// Makes the scene that `spec` names: `NAME` or `NAME?triangles=N`. The same spec gives the same

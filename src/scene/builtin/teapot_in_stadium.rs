@@ -4,7 +4,7 @@
 
 use super::stadium::{self, Stadium};
 use super::teapot;
-use crate::scene::{Camera, Instance, LoadCx, Material, Mesh, Projection, Reason, Scene};
+use crate::scene::{Camera, FirstView, Instance, LoadCx, Material, Mesh, Projection, Reason, Scene};
 use glam::{Affine3A, Vec3};
 
 /// Metres from the field to the top of the plinth on which the teapot stands.
@@ -37,7 +37,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
         instances,
         materials: [teapot::material(), marble].into_iter().chain(Stadium::materials()).collect(),
         up: Vec3::Z,
-        camera: Some(camera()),
+        camera: Some(FirstView::From(camera())),
         ..Scene::default()
     })
 }

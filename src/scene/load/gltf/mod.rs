@@ -7,6 +7,7 @@
 
 mod accessor;
 mod buffers;
+mod cameras;
 mod container;
 mod document;
 mod extensions;
@@ -19,7 +20,7 @@ mod uri;
 use std::ops::Range;
 
 use super::{Loader, Siblings, mesh_bytes};
-use crate::scene::{Instance, LoadCx, Reason, Scene};
+use crate::scene::{FirstView, Instance, LoadCx, Reason, Scene};
 use buffers::Buffers;
 use glam::Vec3;
 use gltf::json::Root;
@@ -41,9 +42,10 @@ impl Loader for Gltf {
         let parts = container::open(bytes)?;
         let (root, _memory) = document::parse(parts.json, cx)?;
         let mut warnings = extensions::check(&root)?;
-        let placements = nodes::placements(&root, &mut warnings)?;
+        let nodes::Walked { placements, camera } = nodes::walk(&root, &mut warnings)?;
         let buffers = Buffers::new(&root, parts.bin, files, cx)?;
-        let mut scene = Scene { materials: materials::all(&root), up: Vec3::Y, warnings, ..Scene::default() };
+        let camera = camera.map(FirstView::Stored);
+        let mut scene = Scene { materials: materials::all(&root), up: Vec3::Y, camera, warnings, ..Scene::default() };
         let meshes = meshes(&root, &buffers, &placements, &mut scene, cx)?;
         let mut memory = cx.budget.charge(0)?;
         for (mesh, world_from_object) in placements {

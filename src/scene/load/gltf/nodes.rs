@@ -1,21 +1,30 @@
-//! The node hierarchy, flattened to where meshes stand.
+//! The node hierarchy, flattened to where meshes stand and the camera does.
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A, Vec3A};
 use gltf::json::scene::Node;
 use gltf::json::{Index, Root};
 
-use crate::scene::Reason;
+use super::cameras::Cameras;
+use crate::scene::{Reason, StoredCamera};
 
 /// A mesh of the document, and where it stands.
 pub(super) type Placement = (usize, Affine3A);
 
+/// What the nodes say.
+pub(super) struct Walked {
+    /// Where meshes stand.
+    pub placements: Vec<Placement>,
+    /// The first camera that makes a picture.
+    pub camera: Option<StoredCamera>,
+}
+
 /// Walks the scene depth first. Transforms are multiplied in 64 bits and rounded once.
-pub(super) fn placements(root: &Root, warnings: &mut Vec<String>) -> Result<Vec<Placement>, Reason> {
+pub(super) fn walk(root: &Root, warnings: &mut Vec<String>) -> Result<Walked, Reason> {
     let mut placements = Vec::new();
     // A stack of our own: a chain of nodes may be as long as the file.
     let mut stack: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
     let mut visited = vec![false; root.nodes.len()];
-    let mut left_out = LeftOut::default();
+    let (mut left_out, mut cameras) = (LeftOut::default(), Cameras::default());
     while let Some((index, world_from_parent)) = stack.pop() {
         let place = format!("node {}", index.value());
         let node = root.get(index).ok_or_else(|| Reason::malformed(&place, "there is no such node"))?;
@@ -28,14 +37,17 @@ pub(super) fn placements(root: &Root, warnings: &mut Vec<String>) -> Result<Vec<
             placements.push((mesh.value(), narrow(&world_from_node)));
             left_out.count(node);
         }
+        if let Some(camera) = node.camera {
+            cameras.offer(root, index.value(), camera, &world_from_node);
+        }
         stack.extend(node.children.iter().flatten().rev().map(|child| (*child, world_from_node)));
     }
-    warnings.extend(left_out.sentences());
+    warnings.extend(left_out.sentences().chain(cameras.sentence()));
     if root.nodes.is_empty() && !root.meshes.is_empty() {
         // Placed nowhere: show each once, where it is.
         placements.extend((0..root.meshes.len()).map(|mesh| (mesh, Affine3A::IDENTITY)));
     }
-    Ok(placements)
+    Ok(Walked { placements, camera: cameras.found })
 }
 
 /// The nodes that the walk begins with: of the default scene, or else the first, or else those

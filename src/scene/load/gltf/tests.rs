@@ -1,5 +1,7 @@
 use super::super::tests::{Beside, check, load, soup};
 use super::*;
+use crate::geometry::Aabb;
+use crate::scene::{Camera, Projection};
 use base64::Engine;
 use serde_json::{Value, json};
 
@@ -172,6 +174,73 @@ fn nodes_place_meshes_depth_first() {
         scene.instances.iter().map(|i| (i.mesh, i.world_from_object.transform_point3(Vec3::ONE).to_array())).collect();
     let expected = [[9.0, -1.0, 1.0], [12.0, 2.0, 2.0], [1.0, 1.0, 4.0]];
     assert_eq!(placed, expected.into_iter().flat_map(|p| [(0, p), (1, p)]).collect::<Vec<_>>());
+}
+
+/// The first view, and the warnings, of a square followed by these nodes.
+fn first_view(cameras: &Value, nodes: &Value) -> (Option<Camera>, Vec<String>) {
+    let mut model = Model::square().with(json!({"attributes": {"POSITION": 0}}));
+    model.json["cameras"] = cameras.clone();
+    model.json["nodes"].as_array_mut().expect("a list").extend(nodes.as_array().expect("a list").iter().cloned());
+    let scene = read(&model.text());
+    let unit = Aabb { min: Vec3::ZERO, max: Vec3::new(1.0, 1.0, 0.0) };
+    (scene.camera.map(|_| scene.first_camera(&unit, 2.0)), scene.warnings)
+}
+
+#[test]
+fn the_first_camera_is_the_first_view() {
+    let cameras = json!([
+        {"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}},
+        {"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 1, "znear": 0.1, "zfar": 100}},
+    ]);
+    // A quarter turn about y, so that -z looks along -x; then the child, further along its own z.
+    let quarter = [0.0, std::f32::consts::FRAC_1_SQRT_2, 0.0, std::f32::consts::FRAC_1_SQRT_2];
+    let nodes = |first: u8| {
+        json!([
+            {"children": [2], "rotation": quarter, "scale": [2, 2, 2], "translation": [0.5, 0.5, 0]},
+            {"camera": first, "translation": [0, 0, 5]},
+            {"camera": 1 - first},
+        ])
+    };
+    let (camera, warnings) = first_view(&cameras, &nodes(0));
+    let camera = camera.expect("a view");
+    let near = |a: Vec3, b: Vec3| assert!(a.distance(b) < 1e-5, "{a}, not {b}");
+    near(camera.eye, Vec3::new(10.5, 0.5, 0.0));
+    near(camera.target, Vec3::new(0.5, 0.5, 0.0));
+    assert_eq!((camera.up, camera.projection), (Vec3::Y, Projection::Perspective { fov_y: 1.0 }));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let (flat, _) = first_view(&cameras, &nodes(1));
+    let flat = flat.expect("a view");
+    near(flat.eye, camera.eye);
+    // Six wide in a picture twice as wide as high.
+    assert_eq!(flat.projection, Projection::Orthographic { height: 3.0 });
+    assert_eq!(first_view(&json!([]), &json!([])), (None, Vec::new()));
+}
+
+#[test]
+fn cameras_that_make_no_picture_are_left_out() {
+    let perspective = |fov: f32| json!({"type": "perspective", "perspective": {"yfov": fov, "znear": 0.1}});
+    let flat = |x: f32| json!({"type": "orthographic", "orthographic": {"xmag": x, "ymag": 1, "znear": 0.1, "zfar": 100}});
+    let cameras =
+        json!([perspective(0.8), perspective(0.0), perspective(3.2), flat(0.0), {"type": "fisheye"}, {"type": "perspective"}]);
+    let here = |camera: u8| json!({"camera": camera, "translation": [0, 0, 3]});
+    let bad = [
+        (here(1), "node 1: its angle is not between 0 and 180 degrees"),
+        (here(2), "node 1: its angle is not between 0 and 180 degrees"),
+        (here(3), "node 1: its picture has no size"),
+        (here(4), "node 1: it is neither perspective nor orthographic"),
+        (here(5), "node 1: it has no perspective"),
+        (here(6), "node 1: there is no such camera"),
+        (json!({"camera": 0, "scale": [1, 1, 0]}), "node 1: it looks nowhere"),
+        (json!({"camera": 0, "matrix": [1,0,0,0, 0,1,0,0, 0,1,0,0, 0,0,0,1]}), "node 1: it is flat"),
+    ];
+    for (node, why) in bad {
+        let (camera, warnings) = first_view(&cameras, &json!([node, here(0), here(1)]));
+        assert_eq!(camera.map(|c| c.projection), Some(Projection::Perspective { fov_y: 0.8 }), "the next is taken: {why}");
+        assert_eq!(warnings, [format!("Cameras that make no picture were left out: 1 ({why}).")]);
+    }
+    let far = json!([{"children": [2], "translation": [3e38, 0, 0]}, {"camera": 0, "translation": [3e38, 0, 0]}]);
+    let nowhere = "Cameras that make no picture were left out: 1 (node 2: it stands nowhere).";
+    assert_eq!(first_view(&cameras, &far), (None, vec![nowhere.to_owned()]));
 }
 
 #[test]
