@@ -1,8 +1,10 @@
 //! The ways to open a model.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
 
+use boxwood::viewer::dialogs::FileDialog;
 use eframe::egui::{DroppedFile, Event, Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable;
 
@@ -98,6 +100,44 @@ fn a_dialog_that_is_closed_changes_nothing() {
     w.harness.run_steps(4);
     assert!(w.state().loading.is_none() && w.state().error.is_none());
     assert_eq!(triangles(&w), 16);
+}
+
+/// A dialog before which somebody sits and thinks: each time it is opened, somebody to answer.
+#[derive(Clone, Default)]
+struct Thinking(Arc<Mutex<Vec<Sender<Option<PathBuf>>>>>);
+
+impl FileDialog for Thinking {
+    fn pick(&self, _: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+        let (sender, receiver) = channel();
+        self.0.lock().expect("nobody has failed").push(sender);
+        receiver
+    }
+}
+
+#[test]
+fn there_is_one_dialog_at_a_time() {
+    let files = Files::new();
+    let path = files.write("quad.ply", files::ply());
+    let thinking = Thinking::default();
+    let opened = || thinking.0.lock().expect("nobody has failed").len();
+    let dialog: Box<dyn FileDialog> = Box::new(thinking.clone());
+    let mut w = Window::new(Setup { dialog: Some(dialog), ..Setup::default() }).settled();
+    w.key(Modifiers::COMMAND, Key::O);
+    w.key(Modifiers::COMMAND, Key::O);
+    w.button("File");
+    w.button_that_contains("Open…");
+    assert_eq!(opened(), 1);
+    thinking.0.lock().expect("nobody has failed")[0].send(None).expect("the window listens");
+    w.step();
+    w.key(Modifiers::COMMAND, Key::O);
+    assert_eq!(opened(), 2, "the first was closed");
+    // One that dies without an answer is closed, too.
+    thinking.0.lock().expect("nobody has failed").clear();
+    w.step();
+    w.key(Modifiers::COMMAND, Key::O);
+    assert_eq!(opened(), 1);
+    thinking.0.lock().expect("nobody has failed")[0].send(Some(path)).expect("the window listens");
+    w.until("the file", |s| s.model.as_ref().is_some_and(|m| m.geometry.triangle_count() == 2));
 }
 
 #[derive(Debug)]

@@ -44,6 +44,8 @@ pub struct Setup {
     pub options: ViewerOptions,
     /// What the file dialog answers.
     pub answer: Option<PathBuf>,
+    /// Asks in its place.
+    pub dialog: Option<Box<dyn FileDialog>>,
     /// No other test runs meanwhile.
     pub alone: bool,
     /// Draws pixels: there must be an adapter.
@@ -63,6 +65,7 @@ impl Default for Setup {
             pixels_per_point: 1.0,
             options,
             answer: None,
+            dialog: None,
             alone: false,
             gpu: false,
             slow_start: false,
@@ -116,7 +119,7 @@ impl Window {
         if setup.foreign {
             builder = builder.allow_missing_glyphs();
         }
-        let (options, dialog) = (setup.options, Box::new(Answer(setup.answer)));
+        let (options, dialog) = (setup.options, setup.dialog.unwrap_or_else(|| Box::new(Answer(setup.answer))));
         let harness = builder.build_eframe(move |cc| {
             cc.storage = storage;
             let app = App::with_dialog(cc, options, dialog).expect("threads");

@@ -1,7 +1,6 @@
 //! What follows from a job that has finished: loading, building, statistics, picking, measuring.
 
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
 use super::State;
@@ -16,19 +15,6 @@ use crate::viewer::timings::Timings;
 use crate::viewer::workers;
 
 impl State {
-    pub(super) fn advance_dialog(&mut self) {
-        match self.asked_for_file.as_ref().map(Receiver::try_recv) {
-            Some(Ok(path)) => {
-                self.asked_for_file = None;
-                if let Some(path) = path {
-                    self.open(path.to_string_lossy().into_owned());
-                }
-            }
-            Some(Err(std::sync::mpsc::TryRecvError::Disconnected)) => self.asked_for_file = None,
-            _ => {}
-        }
-    }
-
     pub(super) fn advance_load(&mut self) {
         let Some((name, job)) = &self.loading else { return };
         if self.size_px == [0, 0] {

@@ -1,6 +1,7 @@
 //! What the window knows, and how commands change it; `finished` is what finished jobs change, and
 //! `refresh` what is asked for anew when the view changes. No drawing here.
 
+mod dialog;
 mod finished;
 mod refresh;
 
@@ -226,7 +227,7 @@ impl State {
         }
         match command {
             Command::Open(model) => self.open(model),
-            Command::OpenDialog => self.asked_for_file = Some(self.dialog.pick(Arc::clone(&self.shared.wake))),
+            Command::OpenDialog => self.ask_for_file(),
             Command::AskForPath(open) => self.asking = open.then(String::new),
             Command::CancelLoad => self.loading = None,
             Command::CancelBuild => self.cancel_build(),
