@@ -1,6 +1,7 @@
 //! Which boxes and planes of a structure are drawn: worked out in the background for the present
 //! view, since a tree has more cells than any screen shows.
 
+use std::cmp::Reverse;
 use std::ops::ControlFlow;
 
 use super::gpu::{BoxInstance, Overlay, Ruler, View};
@@ -48,6 +49,34 @@ struct Found {
     depth: u32,
     bounds: Aabb,
     plane: bool,
+    /// Who goes first among those that are about as large.
+    rank: u32,
+}
+
+impl Found {
+    fn new(cell: &Cell, px: f32) -> Self {
+        Self { px, depth: cell.depth, bounds: *cell.shape.bounds(), plane: false, rank: scatter(cell.id.node) }
+    }
+
+    fn order(&self) -> (Reverse<u32>, u32, bool) {
+        (Reverse(size_class(self.px)), self.rank, self.plane)
+    }
+}
+
+/// Sizes that differ by less than a factor of two are about the same: by size alone the cells of a
+/// grid would all be taken from the corner that is nearest, or that rounding favours.
+fn size_class(px: f32) -> u32 {
+    // The binary exponent. Whole pixels are common sizes, so no limit of a class falls on one.
+    (px * 1.3).to_bits() >> 23
+}
+
+/// Numbers cells anew without any pattern, so that the first so many of neighbours are spread evenly,
+/// and do not look like a structure. They stay the same while the view turns. (The finaliser of
+/// MurmurHash3, Appleby 2011: every bit of the number changes half of the bits.)
+fn scatter(node: u32) -> u32 {
+    let x = (node ^ node >> 16).wrapping_mul(0x85EB_CA6B);
+    let x = (x ^ x >> 13).wrapping_mul(0xC2B2_AE35);
+    x ^ x >> 16
 }
 
 struct Collector<'a> {
@@ -94,7 +123,7 @@ impl Collector<'_> {
         if self.wants_box(cell) {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found { px, depth: cell.depth, bounds, plane: false });
+                self.found.push(Found::new(cell, px));
             }
         }
         if let Some(Split::Axis { axis, pos }) = cell.split
@@ -103,7 +132,7 @@ impl Collector<'_> {
         {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found { px, depth: cell.depth, bounds: plane_in(&bounds, axis, pos), plane: true });
+                self.found.push(Found { bounds: plane_in(&bounds, axis, pos), plane: true, ..Found::new(cell, px) });
             }
         }
         let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
@@ -134,11 +163,12 @@ impl Collector<'_> {
         s.slice == 0 || at.get(s.slice_axis).is_none_or(|layer| layer + 1 == s.slice)
     }
 
-    /// The largest on the screen, as many as are drawn fluently; deeper levels over higher ones.
+    /// The largest on the screen, as many as are drawn fluently, of those about as large some from
+    /// everywhere; deeper levels over higher ones.
     fn finish(mut self) -> Collected {
         let limit = self.wanted.limit.max(1);
         if self.found.len() > limit {
-            self.found.select_nth_unstable_by(limit - 1, |a, b| b.px.total_cmp(&a.px));
+            self.found.select_nth_unstable_by_key(limit - 1, Found::order);
             self.found.truncate(limit);
         }
         self.found.sort_by_key(|f| f.depth);
@@ -159,4 +189,53 @@ fn plane_in(cell: &Aabb, axis: Axis, pos: f32) -> Aabb {
     plane.min[axis.index()] = pos;
     plane.max[axis.index()] = pos;
     plane
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::{BuildCx, registry};
+    use crate::geometry::tri::TestKind;
+    use crate::scene::{Camera, Geometry, LoadCx, Projection, open};
+    use glam::Vec3;
+    use std::sync::Arc;
+
+    /// At most `limit` cells of a grid of many, all of it in view.
+    fn cells_of_a_grid(projection: Projection, limit: usize) -> (Collected, Aabb) {
+        let cx = LoadCx::unattended();
+        let scene = open("builtin:soup?triangles=20000", &cx).expect("built in");
+        let geometry = Arc::new(Geometry::new(&scene, &cx).expect("fits"));
+        let entry = registry::find("grid").expect("registered");
+        let accel = entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &BuildCx::unattended(1)).expect("builds");
+        let settings = OverlaySettings { boxes: true, planes: false, empty_cells: true, slice: 0, ..OverlaySettings::default() };
+        let camera = Camera { eye: Vec3::new(0.3, 0.4, 1.0), target: Vec3::ZERO, up: Vec3::Y, projection };
+        let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
+        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit };
+        (collect(accel.as_ref(), &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
+    }
+
+    #[test]
+    fn a_few_cells_of_a_grid_are_from_everywhere() {
+        const LIMIT: usize = 1000;
+        for projection in [Projection::Orthographic { height: 1.0 }, Projection::Perspective { fov_y: 0.1 }] {
+            let (collected, bounds) = cells_of_a_grid(projection, LIMIT);
+            assert_eq!(collected.shown, LIMIT);
+            assert!(collected.total > 10 * LIMIT, "{}", collected.total);
+            // Of four by four by four parts, how many cells are in each.
+            let mut parts = [0; 64];
+            for cell in &collected.overlay.boxes {
+                let at = ((Vec3::from(cell.min) + Vec3::from(cell.max)) * 0.5 - bounds.min) / bounds.size();
+                let [x, y, z] = at.to_array().map(|x| (x * 4.0) as usize);
+                parts[x + 4 * y + 16 * z] += 1;
+            }
+            assert!(parts.iter().all(|n| (4..=36).contains(n)), "{projection:?}: about 16 in each: {parts:?}");
+        }
+    }
+
+    #[test]
+    fn the_larger_go_first() {
+        let cell = |px: f32, rank: u32| Found { px, depth: 0, bounds: Aabb::EMPTY, plane: false, rank };
+        assert!(cell(20.0, 9).order() < cell(9.0, 1).order() && cell(10.0, 9).order() > cell(11.0, 1).order());
+        assert_eq!(size_class(64.0_f32.next_down()), size_class(64.0_f32.next_up()));
+    }
 }
