@@ -12,7 +12,7 @@ use boxwood::geometry::Ray;
 use boxwood::geometry::tri::TestKind;
 use boxwood::scene::{Geometry, LoadCx, Scene, builtin};
 use boxwood::task::Cancel;
-use common::{geometry_of, scene_of, soup};
+use common::{geometry_of, scene_of, soup, watch};
 use glam::{Vec2, Vec3};
 
 fn built(id: &str, set: &[(&str, &str)], geometry: &Arc<Geometry>) -> Box<dyn Accel> {
@@ -38,7 +38,7 @@ fn primary(scene: &Scene, geometry: &Geometry, side: u16) -> Vec<Ray> {
 fn counts(accel: &dyn Accel, rays: &[Ray]) -> Counts {
     let mut counts = Counts::default();
     rays.iter().for_each(|ray| {
-        accel.trace_watched(ray, Mode::Closest, &mut counts);
+        watch(accel, ray, Mode::Closest, &mut counts);
     });
     counts
 }

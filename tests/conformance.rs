@@ -5,15 +5,15 @@
 mod common;
 
 use boxwood::accel::params::{Kind, ParamValues};
-use boxwood::accel::probe::Counts;
+use boxwood::accel::probe::{Counts, Watched};
 use boxwood::accel::registry::{self, Entry};
 use boxwood::accel::stats::{SahWeights, Stats};
-use boxwood::accel::{Accel, BuildCx, BuildError, Hit, Mode, cell, validate};
+use boxwood::accel::{Accel, BuildCx, BuildError, Hit, Mode, Step, cell, validate};
 use boxwood::geometry::Ray;
 use boxwood::geometry::tri::TestKind;
 use boxwood::scene::Geometry;
-use boxwood::task::{Budget, Cancel};
-use common::{Random, ball, build, geometry_of, meet_in_f64, rays_for, scene_of, soup, trace};
+use boxwood::task::{Budget, Cancel, Cancelled};
+use common::{Random, ball, build, geometry_of, meet_in_f64, rays_for, scene_of, soup, trace, watch};
 use glam::Vec3;
 use proptest::prelude::*;
 
@@ -319,13 +319,48 @@ fn watched_rays_hit_the_same_and_count_what_statistics_predict() {
         let hits = trace(accel.as_ref(), &rays, Mode::Closest);
         let mut counts = Counts::default();
         for (ray, hit) in rays.iter().zip(&hits) {
-            assert_eq!(accel.trace_watched(ray, Mode::Closest, &mut counts), *hit, "{}", entry.id);
+            assert_eq!(watch(accel.as_ref(), ray, Mode::Closest, &mut counts), *hit, "{}", entry.id);
         }
         assert!(counts.prims > 0 && counts.nodes >= counts.leaves && counts.leaves > 0, "{}: {counts:?}", entry.id);
         let stats = Stats::of(accel.as_ref(), SahWeights::default(), &Cancel::new()).expect("not cancelled");
         assert_eq!(stats.leaf_sizes.iter().sum::<u64>(), stats.leaves);
         assert_eq!(stats.leaf_depths.iter().sum::<u64>(), stats.leaves);
         assert!(stats.references >= geometry.live_count() as u64 && stats.sah > 0.0, "{}: {stats:?}", entry.id);
+    }
+}
+
+#[test]
+fn a_watched_ray_stops_when_asked() {
+    let geometry = geometry_of(&scene_of(&soup(1000, 0.2, 14)));
+    let ray = Ray::new(Vec3::new(-3.0, 0.0, 0.0), Vec3::X);
+    let cancel = Cancel::new();
+    cancel.cancel();
+    for entry in registry::ALL {
+        let accel = build(entry, &geometry, TestKind::Watertight);
+        let mut counts = Counts::default();
+        assert_eq!(accel.trace_watched(&ray, Mode::Any, &mut counts, &cancel), Err(Cancelled), "{}", entry.id);
+        assert_eq!(accel.count_uncut(&ray, &mut counts, &cancel), Err(Cancelled), "{}", entry.id);
+        assert_eq!(counts.prims, 0, "{}", entry.id);
+    }
+}
+
+/// Where there is no structure one ray takes long: it stops on its way.
+#[test]
+fn a_ray_through_no_structure_stops_on_its_way() {
+    let n = 300_000;
+    let geometry = geometry_of(&scene_of(&soup(n, 0.2, 15)));
+    let ray = Ray::new(Vec3::new(-3.0, 0.0, 0.0), Vec3::X);
+    for entry in registry::ALL.iter().filter(|e| e.family == registry::Family::Brute) {
+        let accel = build(entry, &geometry, TestKind::Watertight);
+        let (cancel, mut counts) = (Cancel::new(), Counts::default());
+        let mut at_the_first_test = |step| {
+            if matches!(step, Step::Tested(..)) {
+                cancel.cancel()
+            }
+        };
+        let mut watched = Watched { counts: &mut counts, listener: Some(&mut at_the_first_test) };
+        assert_eq!(accel.trace_heard(&ray, Mode::Closest, &mut watched, &cancel), Err(Cancelled), "{}", entry.id);
+        assert!(counts.prims > 0 && counts.prims <= n as u64 / 4, "{}: {} of {n}", entry.id, counts.prims);
     }
 }
 

@@ -12,7 +12,7 @@ use boxwood::geometry::tri::TestKind;
 use boxwood::geometry::{Axis, Ray};
 use boxwood::scene::{self, Geometry, LoadCx};
 use boxwood::task::{Budget, Cancel};
-use common::{Random, ball, geometry_of, rays_for, scene_of, soup, trace};
+use common::{Random, ball, geometry_of, rays_for, scene_of, soup, trace, watch};
 use glam::Vec3;
 
 fn built(geometry: &Arc<Geometry>, set: &[(&str, &str)], cx: &BuildCx) -> Result<Box<dyn Accel>, BuildError> {
@@ -34,7 +34,7 @@ fn stats(accel: &dyn Accel) -> Stats {
 fn watched(accel: &dyn Accel, rays: &[Ray]) -> Counts {
     let mut counts = Counts::default();
     for ray in rays {
-        accel.trace_watched(ray, Mode::Closest, &mut counts);
+        watch(accel, ray, Mode::Closest, &mut counts);
     }
     counts
 }
@@ -90,11 +90,11 @@ fn a_hit_outside_its_cell_is_kept_until_nothing_can_be_closer() {
 
     let ray = Ray::new(Vec3::new(-3.0, 0.5, -0.8), Vec3::X);
     let mut counts = Counts::default();
-    let hit = accel.trace_watched(&ray, Mode::Closest, &mut counts).expect("a hit");
+    let hit = watch(accel.as_ref(), &ray, Mode::Closest, &mut counts).expect("a hit");
     assert_eq!((hit.primitive, counts.outside, counts.leaves), (0, 1, 2));
     assert!(ray.at(hit.t).x > pos, "in the far half");
     let mut any = Counts::default();
-    assert!(accel.trace_watched(&ray, Mode::Any, &mut any).is_some());
+    assert!(watch(accel.as_ref(), &ray, Mode::Any, &mut any).is_some());
     assert_eq!((any.outside, any.leaves), (0, 1), "any hit will do at once");
 
     // Something closer in the far half wins over the hit that was kept.
@@ -103,7 +103,7 @@ fn a_hit_outside_its_cell_is_kept_until_nothing_can_be_closer() {
     let geometry = geometry_of(&scene_of(&triangles));
     let accel = build(&geometry, &[("max_depth", "1")]);
     let mut counts = Counts::default();
-    let hit = accel.trace_watched(&ray, Mode::Closest, &mut counts).expect("a hit");
+    let hit = watch(accel.as_ref(), &ray, Mode::Closest, &mut counts).expect("a hit");
     assert_eq!((hit.primitive as usize, counts.outside), (triangles.len() - 1, 1));
 }
 

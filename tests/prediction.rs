@@ -14,7 +14,7 @@ use boxwood::geometry::tri::TestKind;
 use boxwood::lab::{Enough, UncutLines};
 use boxwood::scene::{LoadCx, open};
 use boxwood::task::{Cancel, Pool};
-use common::{build, geometry_of, rays_for, scene_of, soup};
+use common::{build, geometry_of, rays_for, scene_of, soup, watch};
 use std::ops::ControlFlow;
 
 /// Prediction and measurement agree to this share.
@@ -93,8 +93,8 @@ fn nothing_cuts_an_uncut_ray_short() {
         let (mut cut, mut uncut) = (Counts::default(), Counts::default());
         for ray in &rays {
             let before = (cut.nodes, uncut.nodes);
-            accel.trace_watched(ray, Mode::Closest, &mut cut);
-            accel.count_uncut(ray, &mut uncut);
+            watch(accel.as_ref(), ray, Mode::Closest, &mut cut);
+            accel.count_uncut(ray, &mut uncut, &Cancel::new()).expect("not cancelled");
             assert!(uncut.nodes - before.1 >= cut.nodes - before.0, "{}: {ray:?}", entry.id);
         }
         assert!(uncut.prims >= cut.prims && uncut.leaves >= cut.leaves, "{}: {cut:?} {uncut:?}", entry.id);
@@ -113,8 +113,8 @@ fn a_bvh_without_early_out_is_never_cut() {
     let accel = entry.build(&geometry, TestKind::Watertight, &params, &BuildCx::unattended(1)).expect("builds");
     let (mut whole, mut uncut) = (Counts::default(), Counts::default());
     for ray in rays_for(&triangles, 500, 6) {
-        accel.trace_watched(&ray, Mode::Closest, &mut whole);
-        accel.count_uncut(&ray, &mut uncut);
+        watch(accel.as_ref(), &ray, Mode::Closest, &mut whole);
+        accel.count_uncut(&ray, &mut uncut, &Cancel::new()).expect("not cancelled");
     }
     assert_eq!(whole, uncut);
     assert!(uncut.nodes > 1000);

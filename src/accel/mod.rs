@@ -44,6 +44,19 @@ pub trait Structure: Cells + Sized + 'static {
     /// the lowest primitive; for `Q::ANY` any accepted hit.
     fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit>;
 
+    /// The same for a ray that is watched and may be given up. The default looks at `cancel` once; a
+    /// structure for which one ray can take long looks more often.
+    fn trace_stoppable<Q: Query, P: Probe>(
+        &self,
+        ray: &Ray,
+        query: &Q,
+        probe: &mut P,
+        cancel: &Cancel,
+    ) -> Result<Option<PrimHit>, Cancelled> {
+        cancel.check()?;
+        Ok(self.trace_one(ray, query, probe))
+    }
+
     /// Traces world rays into `hits` of the same length. The default traces them one by one; a
     /// structure for which one ray can take long looks at `cancel` more often.
     fn trace_batch<Q: Query>(
@@ -89,16 +102,26 @@ pub trait Accel: Cells {
 
     /// Traces one world ray and counts what the traversal does; a listener hears every step. The
     /// hit is the same.
-    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>) -> Option<Hit>;
+    ///
+    /// # Errors
+    /// [`Cancelled`], within milliseconds of the request; the counts are then those of a part of the
+    /// ray.
+    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>, cancel: &Cancel) -> Result<Option<Hit>, Cancelled>;
 
     /// The same with nobody who listens.
-    fn trace_watched(&self, ray: &Ray, mode: Mode, counts: &mut Counts) -> Option<Hit> {
-        self.trace_heard(ray, mode, &mut Watched { counts, listener: None })
+    ///
+    /// # Errors
+    /// As [`Self::trace_heard`].
+    fn trace_watched(&self, ray: &Ray, mode: Mode, counts: &mut Counts, cancel: &Cancel) -> Result<Option<Hit>, Cancelled> {
+        self.trace_heard(ray, mode, &mut Watched { counts, listener: None }, cancel)
     }
 
     /// Follows one world ray to its end, no hit cutting it short, and counts what the traversal does:
     /// what [`stats::Stats::expected_nodes`] predicts of random lines.
-    fn count_uncut(&self, ray: &Ray, counts: &mut Counts);
+    ///
+    /// # Errors
+    /// As [`Self::trace_heard`].
+    fn count_uncut(&self, ray: &Ray, counts: &mut Counts, cancel: &Cancel) -> Result<(), Cancelled>;
 }
 
 impl<S: Structure> Accel for S {
@@ -114,19 +137,17 @@ impl<S: Structure> Accel for S {
         }
     }
 
-    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>) -> Option<Hit> {
-        let local = |ray: &Ray| {
-            Ok(match mode {
-                Mode::Closest => self.trace_one(ray, &Closest, watched),
-                Mode::Any => self.trace_one(ray, &AnyHit, watched),
-            })
+    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>, cancel: &Cancel) -> Result<Option<Hit>, Cancelled> {
+        let local = |ray: &Ray| match mode {
+            Mode::Closest => self.trace_stoppable(ray, &Closest, watched, cancel),
+            Mode::Any => self.trace_stoppable(ray, &AnyHit, watched, cancel),
         };
-        in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local).unwrap_or(None)
+        in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local)
     }
 
-    fn count_uncut(&self, ray: &Ray, counts: &mut Counts) {
-        let local = |ray: &Ray| Ok(self.trace_one(ray, &Nothing, counts));
-        let _ = in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local); // there is no hit
+    fn count_uncut(&self, ray: &Ray, counts: &mut Counts, cancel: &Cancel) -> Result<(), Cancelled> {
+        let local = |ray: &Ray| self.trace_stoppable(ray, &Nothing, counts, cancel);
+        in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local).map(|_| ()) // there is no hit
     }
 }
 

@@ -163,8 +163,7 @@ impl<'a> Lane<'a> {
         for Block { mode, rays, secs } in &self.blocks {
             let mut counts = Counts::default();
             for ray in rays {
-                cancel.check()?;
-                self.contestant.accel.trace_watched(ray, *mode, &mut counts);
+                self.contestant.accel.trace_watched(ray, *mode, &mut counts, cancel)?;
             }
             let n = rays.len() as f64;
             rows.push([counts.nodes as f64 / n, counts.prims as f64 / n, 1.0]);
@@ -199,9 +198,8 @@ fn neighbours(set: &RaySet, rays: usize) -> Vec<Ray> {
 fn by_mixture(contestant: &Contestant, set: &RaySet, rays: usize, cancel: &Cancel) -> Result<Vec<Ray>, Cancelled> {
     let mut mixed = Vec::new();
     for ray in set.rays.iter().take(rays * BLOCKS) {
-        cancel.check()?;
         let mut counts = Counts::default();
-        contestant.accel.trace_watched(ray, set.mode, &mut counts);
+        contestant.accel.trace_watched(ray, set.mode, &mut counts, cancel)?;
         mixed.push((counts.prims as f64 / counts.nodes.max(1) as f64, *ray));
     }
     mixed.sort_by(|a, b| a.0.total_cmp(&b.0));

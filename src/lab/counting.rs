@@ -51,9 +51,8 @@ impl Counted {
 pub fn count(contestant: &Contestant, set: &RaySet, n: usize, pool: &Pool, cancel: &Cancel) -> Result<Counted, Cancelled> {
     let rays = pick(&set.rays, n);
     let watch = |mut sum: Counted, ray| {
-        cancel.check()?;
         let mut counts = Counts::default();
-        contestant.accel.trace_watched(ray, set.mode, &mut counts);
+        contestant.accel.trace_watched(ray, set.mode, &mut counts, cancel)?;
         sum.add(counts);
         Ok(sum)
     };

@@ -96,9 +96,8 @@ fn batch(
     cancel: &Cancel,
 ) -> Result<Counted, Cancelled> {
     let follow = |mut sum: Counted, i| {
-        cancel.check()?;
         let mut counts = Counts::default();
-        accel.count_uncut(&line(bounds, i), &mut counts);
+        accel.count_uncut(&line(bounds, i), &mut counts, cancel)?;
         // A line that meets the root's box, but not the root, is none of those that are asked for.
         if counts.nodes > 0 {
             sum.add(counts);

@@ -313,7 +313,7 @@ impl<N: Fn()> Worker<N> {
         for i in 0..rays.len() {
             let ray = rays[i * 7 % rays.len()];
             request.job.accel.trace(&[ray], accel::Mode::Closest, &mut hits, cancel)?;
-            request.job.accel.trace_watched(&ray, accel::Mode::Closest, &mut task.counts);
+            request.job.accel.trace_watched(&ray, accel::Mode::Closest, &mut task.counts, cancel)?;
             task.counted += 1;
             if start.elapsed().as_secs_f64() > budget {
                 break;

@@ -111,9 +111,8 @@ impl Job {
     /// Traces and counts, one ray at a time.
     fn watch(&self, rays: &[Ray], hits: &mut [Option<Hit>], samples: &mut [[f32; 4]], cancel: &Cancel) -> Result<(), Cancelled> {
         for ((ray, hit), sample) in rays.iter().zip(hits).zip(samples) {
-            cancel.check()?;
             let mut counts = Counts::default();
-            *hit = self.accel.trace_watched(ray, accel::Mode::Closest, &mut counts);
+            *hit = self.accel.trace_watched(ray, accel::Mode::Closest, &mut counts, cancel)?;
             let amount = if self.mode == Mode::Nodes { counts.nodes } else { counts.prims };
             // A ray that does nothing at all is background.
             *sample = [amount as f32, 0.0, 0.0, f32::from(u8::from(hit.is_some() || amount > 0))];

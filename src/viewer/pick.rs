@@ -9,6 +9,7 @@ use crate::accel::probe::{Counts, Step, Watched};
 use crate::accel::{Accel, Hit, Mode};
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Scene;
+use crate::task::{Cancel, Cancelled};
 use glam::Vec3;
 
 /// Something that was clicked.
@@ -42,18 +43,22 @@ impl Picked {
 const MOST_STEPS: usize = 20_000;
 
 /// Traces the ray of the click; `None` if it meets nothing.
-pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray) -> Option<Picked> {
+///
+/// # Errors
+/// [`Cancelled`] if asked to stop.
+pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray, cancel: &Cancel) -> Result<Option<Picked>, Cancelled> {
     let mut counts = Counts::default();
     let (mut steps, mut more_steps) = (Vec::new(), false);
     let mut listener = |step| if steps.len() < MOST_STEPS { steps.push(step) } else { more_steps = true };
-    let hit = accel.trace_heard(ray, Mode::Closest, &mut Watched { counts: &mut counts, listener: Some(&mut listener) })?;
+    let mut watched = Watched { counts: &mut counts, listener: Some(&mut listener) };
+    let Some(hit) = accel.trace_heard(ray, Mode::Closest, &mut watched, cancel)? else { return Ok(None) };
     let path = path_to(accel, ray, &hit);
     let mesh = &scene.meshes[scene.instances[hit.instance as usize].mesh];
     let name = if mesh.name.is_empty() { String::new() } else { format!(" of {}", mesh.name) };
     let depth = path.last().map(|leaf| format!(", leaf at depth {}", leaf.depth)).unwrap_or_default();
     let work = format!("{} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
     let text = format!("Triangle {}{name}{depth}: this ray took {work}", format::count(u64::from(hit.primitive)));
-    Some(Picked { text, level: path.len().saturating_sub(1), path, steps, more_steps })
+    Ok(Some(Picked { text, level: path.len().saturating_sub(1), path, steps, more_steps }))
 }
 
 /// The cells from the root to the leaf that holds the triangle and the point; empty if none does.

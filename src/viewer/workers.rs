@@ -104,11 +104,11 @@ pub fn collect(shared: &Shared, accel: Arc<dyn Accel>, wanted: Wanted) -> std::i
 }
 
 /// What was clicked, on its way.
-pub type Picking = Job<Option<Picked>>;
+pub type Picking = Job<Result<Option<Picked>, Cancelled>>;
 
 /// Starts looking what is under a click: a ray through a structure that is none can take long.
 pub fn pick(shared: &Shared, scene: Arc<Scene>, accel: Arc<dyn Accel>, ray: Ray) -> std::io::Result<Picking> {
-    Job::spawn("pick", shared.waker(), move |_, _| pick::pick(&scene, accel.as_ref(), &ray))
+    Job::spawn("pick", shared.waker(), move |cancel, _| pick::pick(&scene, accel.as_ref(), &ray, cancel))
 }
 
 /// The SAH curves of a cell, on their way.

@@ -6,6 +6,7 @@ pub mod tiny;
 use std::io::Write;
 use std::sync::Arc;
 
+use boxwood::accel::probe::Counts;
 use boxwood::accel::registry::Entry;
 use boxwood::accel::{Accel, BuildCx, Hit, Mode};
 use boxwood::geometry::Ray;
@@ -113,6 +114,11 @@ pub fn trace(accel: &dyn Accel, rays: &[Ray], mode: Mode) -> Vec<Option<Hit>> {
     let mut hits = vec![None; rays.len()];
     accel.trace(rays, mode, &mut hits, &Cancel::new()).expect("not cancelled");
     hits
+}
+
+/// Traces a ray and counts what that takes.
+pub fn watch(accel: &dyn Accel, ray: &Ray, mode: Mode, counts: &mut Counts) -> Option<Hit> {
+    accel.trace_watched(ray, mode, counts, &Cancel::new()).expect("not cancelled")
 }
 
 /// What 64 bits say of a ray and a triangle: t, and how far inside the edges it passes, relative to

@@ -51,7 +51,7 @@ impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
     }
 
     #[inline(always)]
-    fn trace_checked<Q: Query, P: Probe>(
+    fn trace_with_checks<Q: Query, P: Probe>(
         &self,
         ray: &Ray,
         query: &Q,
@@ -114,7 +114,17 @@ impl<T: TriTest, const BOUND: bool> Structure for Brute<T, BOUND> {
     }
 
     fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
-        self.trace_checked(ray, query, probe, || Ok(())).unwrap_or(None)
+        self.trace_with_checks(ray, query, probe, || Ok(())).unwrap_or(None)
+    }
+
+    fn trace_stoppable<Q: Query, P: Probe>(
+        &self,
+        ray: &Ray,
+        query: &Q,
+        probe: &mut P,
+        cancel: &Cancel,
+    ) -> Result<Option<PrimHit>, Cancelled> {
+        self.trace_with_checks(ray, query, probe, || cancel.check())
     }
 
     fn trace_batch<Q: Query>(
@@ -126,7 +136,7 @@ impl<T: TriTest, const BOUND: bool> Structure for Brute<T, BOUND> {
     ) -> Result<Traced, Cancelled> {
         let mut traced = Traced::default();
         for (ray, hit) in rays.iter().zip(hits) {
-            let local = |ray: &Ray| self.trace_checked(ray, query, &mut Off, || cancel.check());
+            let local = |ray: &Ray| self.trace_with_checks(ray, query, &mut Off, || cancel.check());
             *hit = in_scaled_space(&self.geometry, ray, &mut traced, local)?;
         }
         Ok(traced)

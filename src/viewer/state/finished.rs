@@ -111,13 +111,13 @@ impl State {
         let Some(job) = &self.picking else { return };
         match job.poll() {
             Outcome::Running => return,
-            Outcome::Done(picked) => {
+            Outcome::Done(Ok(picked)) => {
                 if picked != self.picked {
                     self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
                 }
                 self.select(picked);
             }
-            Outcome::Died => {}
+            Outcome::Done(Err(_)) | Outcome::Died => {}
         }
         self.picking = None;
     }
