@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use boxwood::render::Mode;
 use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -72,14 +73,47 @@ fn tab_reaches_the_main_controls() {
     assert!(missed.is_empty(), "Tab does not reach {missed:?}; it reaches {reached:?}");
 }
 
+/// What a screen reader has to say of the view.
+fn described(w: &Window) -> String {
+    w.harness.get_by_role_and_label(Role::Canvas, "3D viewport").accesskit_node().description().unwrap_or_default()
+}
+
+#[track_caller]
+fn describes(w: &Window, parts: &[&str]) {
+    let said = described(w);
+    for part in parts {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
 #[test]
 fn the_viewport_says_what_is_to_be_seen() {
     let mut w = Window::lecture();
-    let says = |w: &Window| w.harness.get_by_role(Role::Canvas).accesskit_node().label().unwrap_or_default();
-    for part in ["3D viewport", "builtin:lecture", "BVH", "depth 3", "samples a pixel"] {
-        assert!(says(&w).contains(part), "{part}: {}", says(&w));
-    }
+    describes(&w, &["builtin:lecture. ", "BVH, boxes at depth 3, 1 samples a pixel. "]);
     w.button("k-d tree");
     w.settle();
-    assert!(says(&w).contains("k-d tree"));
+    describes(&w, &["k-d tree, boxes at depth"]);
+    w.button("Grid");
+    w.settle();
+    describes(&w, &["Grid, 1 samples a pixel."]);
+}
+
+#[test]
+fn what_is_written_over_the_picture_is_said_too() {
+    let mut w = Window::with_model("builtin:teapot?triangles=1000");
+    let boxes = |w: &Window| format!("Showing {} of {} boxes.", w.state().collected.shown, w.state().collected.total);
+    describes(&w, &[&boxes(&w)]);
+    w.press_in_one_frame(w.viewport().center());
+    w.until("a selection", |s| s.picked.is_some());
+    w.settle();
+    let picked = w.state().picked.as_ref().expect("clicked").text.clone();
+    describes(&w, &[&format!("{picked}."), &boxes(&w)]);
+    w.choose("Shaded", Mode::Nodes.label());
+    w.settle();
+    describes(&w, &["Colours show ", ", from "]);
+    w.button("k-d tree");
+    w.until("the change", |s| s.change.is_some());
+    w.step();
+    let change = w.state().change.as_ref().expect("just now").0.clone();
+    describes(&w, &[&format!("{change}.")]);
 }

@@ -23,5 +23,5 @@ fn every_mode_gives_its_picture() {
         assert!(pictures.insert(picture(&w).rgba.clone()), "{} looks like another", mode.id());
         assert_eq!(w.says(&format!("{} a ray", mode.label())), mode.is_heat(), "legend of {}", mode.id());
     }
-    assert!(w.harness.get_by_role(Role::Canvas).accesskit_node().label().is_some_and(|l| l.contains("teapot")));
+    assert!(w.harness.get_by_role(Role::Canvas).accesskit_node().description().is_some_and(|d| d.contains("teapot")));
 }

@@ -2,6 +2,7 @@
 //! [`Command`]s; it changes nothing itself.
 
 pub mod bars;
+pub mod captions;
 pub mod help;
 pub mod menu;
 pub mod overlay;

@@ -1,20 +1,18 @@
-//! The 3D view: the picture with boxes over it, what is said on top of it, and the hands.
+//! The 3D view: the picture with boxes over it, and the hands.
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Align2, Color32, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::Vec2;
 
-use super::Commands;
-use crate::render::Range;
-use crate::render::colormap::viridis;
+use super::{Commands, captions};
 use crate::scene::Camera;
 use crate::viewer::command::Command;
 use crate::viewer::gpu::{self, Base, DrawList, Raster, View};
+use crate::viewer::navigation;
 use crate::viewer::settings::Navigation;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
-use crate::viewer::{format, navigation};
 
 /// The name of the viewport among viewports.
 const PANE: gpu::PaneId = 0;
@@ -26,7 +24,9 @@ const KEY_ZOOM: f32 = 60.0;
 /// Draws the view; returns its size in pixels.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, format!("3D viewport. {}", describe(state))));
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "3D viewport"));
+    // What changes with every picture is no part of the name, or a screen reader would begin anew.
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(captions::describe(state)));
     if response.clicked() || response.drag_started() {
         response.request_focus();
     }
@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         let stroke = egui::Stroke::new(1.0, Palette::in_ui(ui).accent_text);
         ui.painter().rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Inside);
     }
-    captions(ui, rect, state);
+    captions::show(ui, rect, state);
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
         commands.push(Command::Pick(in_picture(rect, at)));
     }
@@ -45,15 +45,6 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         commands.push(Command::Camera(camera));
     }
     size_px
-}
-
-/// What is to be seen, for those who cannot see it.
-fn describe(state: &State) -> String {
-    let Some(model) = &state.model else { return "Nothing is open.".to_owned() };
-    let structure = state.shown.as_ref().map_or("no structure yet", |b| b.key.entry.name);
-    let samples = state.picture.as_ref().map_or(0, |p| p.progress.samples);
-    let depth = state.settings.overlay.depth;
-    format!("{}, {structure}, boxes at depth {depth}, {samples} samples a pixel.", model.scene.name)
 }
 
 fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point: f32) {
@@ -86,85 +77,6 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
     if state.picture.is_none() && there < all {
         ui.ctx().request_repaint();
     }
-}
-
-/// What is written over the picture.
-fn captions(ui: &mut Ui, rect: Rect, state: &State) {
-    let inner = rect.shrink(theme::GUTTER);
-    if state.model.is_none() {
-        let text = if state.loading.is_some() { "Opening…" } else { "Drop a model here, or open one from the File menu." };
-        ui.painter().text(
-            rect.center(),
-            Align2::CENTER_CENTER,
-            text,
-            egui::TextStyle::Body.resolve(ui.style()),
-            Palette::in_ui(ui).dim,
-        );
-        return;
-    }
-    let overlay = &state.settings.overlay;
-    if state.shown.is_some() && (overlay.boxes || overlay.planes) {
-        caption(ui, inner.left_bottom(), Align2::LEFT_BOTTOM, &showing(state));
-    }
-    if let Some(picked) = &state.picked {
-        let above = theme::ROW + theme::GRID;
-        caption(ui, inner.left_bottom() - vec2(0.0, above), Align2::LEFT_BOTTOM, &picked.text);
-    }
-    if let Some(p) = state.picture.as_ref().map(|p| p.progress).filter(|p| p.step > 1) {
-        let text = format!("1/{} resolution after {}", p.step, format::duration(p.secs));
-        caption(ui, inner.right_top(), Align2::RIGHT_TOP, &text);
-    }
-    if let Some((text, until)) = &state.change
-        && let Some(left) = until.checked_duration_since(std::time::Instant::now())
-    {
-        caption(ui, inner.center_top(), Align2::CENTER_TOP, text);
-        ui.ctx().request_repaint_after(left);
-    }
-    if let Some(range) = state.picture.as_ref().map(|p| p.range).filter(|_| state.settings.mode.is_heat()) {
-        legend(ui, inner, state.settings.mode.label(), range);
-    }
-}
-
-/// `Showing 14 of 14 boxes`.
-fn showing(state: &State) -> String {
-    let c = &state.collected;
-    if c.total == 0 && !c.more {
-        return "No boxes at this depth".to_owned();
-    }
-    let beyond = if c.more { " or more" } else { "" };
-    format!("Showing {} of {}{beyond} boxes", format::count(c.shown as u64), format::count(c.total as u64))
-}
-
-/// Text on a plate, so that it can be read over any picture.
-fn caption(ui: &Ui, at: Pos2, align: Align2, text: &str) {
-    let palette = Palette::in_ui(ui);
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), egui::TextStyle::Body.resolve(ui.style()), palette.text);
-    let plate = align.anchor_size(at, galley.size() + vec2(2.0 * theme::GUTTER, theme::GRID));
-    ui.painter().rect_filled(plate, theme::GRID, theme::plate(palette));
-    ui.painter().galley(plate.center() - galley.size() * 0.5, galley, palette.text);
-}
-
-/// The colours of a heat map and what they stand for.
-fn legend(ui: &Ui, inner: Rect, name: &str, range: Range) {
-    const STEPS: u32 = 48;
-    let width = 48.0 * theme::GRID;
-    let palette = Palette::in_ui(ui);
-    let plate =
-        Rect::from_min_max(inner.right_bottom() - vec2(width + 2.0 * theme::GUTTER, 13.0 * theme::GRID), inner.right_bottom());
-    ui.painter().rect_filled(plate, theme::GRID, theme::plate(palette));
-    let bar = Rect::from_min_size(plate.left_top() + vec2(theme::GUTTER, 6.0 * theme::GRID), vec2(width, 2.0 * theme::GRID));
-    for i in 0..STEPS {
-        let x = |i: u32| bar.left() + bar.width() * i as f32 / STEPS as f32;
-        let [r, g, b] = viridis((i as f32 + 0.5) / STEPS as f32).map(|c| (c * 255.0) as u8);
-        let step = Rect::from_min_max(pos2(x(i), bar.top()), pos2(x(i + 1), bar.bottom()));
-        ui.painter().rect_filled(step, 0.0, Color32::from_rgb(r, g, b));
-    }
-    let text = |at: Pos2, align: Align2, text: String| {
-        ui.painter().text(at, align, text, egui::TextStyle::Small.resolve(ui.style()), palette.text);
-    };
-    text(bar.left_top() - vec2(0.0, theme::GRID), Align2::LEFT_BOTTOM, format!("{name} a ray"));
-    text(bar.left_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::LEFT_TOP, format::number(range.min.into()));
-    text(bar.right_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::RIGHT_TOP, format::number(range.max.into()));
 }
 
 /// Where the hands take the camera, if they do.
