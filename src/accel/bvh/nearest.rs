@@ -93,8 +93,8 @@ impl Piece {
             let z = size(&min_z[..count], &max_z[..count], i);
             let area = (x * (y + z) + y * z).to_bits() & !*mask;
             // The partner in even pairs has the code 0.
-            let apart = u32::from(distance > 1) | (num::index(i) & 1 ^ even ^ 1);
-            let (up, down) = (f32::from_bits(area | above * apart), f32::from_bits(area | below * apart));
+            let apart = u32::from(distance > 1) | ((num::index(i) & 1) ^ even ^ 1);
+            let (up, down) = (f32::from_bits(area | (above * apart)), f32::from_bits(area | (below * apart)));
             keys[i] = if up < keys[i] { up } else { keys[i] };
             keys[i + distance] = if down < keys[i + distance] { down } else { keys[i + distance] };
         }
@@ -107,7 +107,7 @@ impl Piece {
             let code = (self.keys[self.before + i].to_bits() & self.mask) as usize;
             *found = num::index(match code {
                 0 => at ^ 1,
-                _ if code % 2 == 0 => at - code / 2,
+                _ if code.is_multiple_of(2) => at - code / 2,
                 _ => at + code / 2,
             });
         }
