@@ -1,9 +1,9 @@
 //! Bounding volumes: tightness against cost. One tree, built as the BVH's with boxes, and around
 //! its nodes a volume of choice. All volumes give the same hits, to the bit.
 //!
-//! [`Volume`] says what a volume is; each is a file of its own ([`aabb`], [`sphere`], [`obb`],
-//! [`kdop`], [`hull`]) and one line in [`KINDS`]. [`fit`] puts them around the nodes, [`tree`] holds
-//! the nodes and the traversal, [`inspect`] is what measuring looks at.
+//! `Volume` says what a volume is; each is a file of its own (`aabb`, `sphere`, `obb`,
+//! `kdop`, `hull`) and one line in `KINDS`. `fit` puts them around the nodes, `tree` holds
+//! the nodes and the traversal, `inspect` is what measuring looks at.
 
 mod aabb;
 mod fit;
