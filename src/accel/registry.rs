@@ -98,7 +98,7 @@ pub const ALL: &[Entry] = &[
         name: "BVH",
         short: "BVH",
         family: Family::Bvh,
-        help: "Bounding volume hierarchy: a binary tree of boxes, split by the binned surface area heuristic.",
+        help: "Bounding volume hierarchy: a binary tree of boxes, divided where the surface area heuristic says or in simpler ways.",
         params: bvh::PARAMS,
         watertight: bvh::build::<Watertight>,
         fast: bvh::build::<Fast>,

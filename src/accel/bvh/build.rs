@@ -75,7 +75,8 @@ impl Plan {
         };
         // Nodes exist twice while subtrees are joined or arranged.
         let each = size_of::<PrimBox>() + order + size_of::<Packed>();
-        (refs * each + 2 * Draft::bytes(refs)) as u64
+        let arranging = if self.needs_leaves() { Draft::arranging_bytes(refs) } else { 0 };
+        (refs * each + 2 * Draft::bytes(refs) + arranging) as u64
     }
 }
 

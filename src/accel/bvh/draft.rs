@@ -27,6 +27,11 @@ impl Draft {
         2 * triangles * size_of::<Node>() + triangles * size_of::<PrimRef>()
     }
 
+    /// What [`Self::arranged`] takes beside both drafts.
+    pub const fn arranging_bytes(triangles: usize) -> usize {
+        2 * triangles * size_of::<Summary>()
+    }
+
     /// The packed triangles in the order of the leaves.
     pub fn pack(&self, geometry: &Geometry, cx: &BuildCx) -> Result<Vec<Packed>, BuildError> {
         in_chunks(self.refs.len(), cx, |i| Packed { corners: geometry.corners(self.refs[i]), prim: self.refs[i] })
@@ -43,7 +48,10 @@ impl Draft {
         cx.progress.start("arrange", self.refs.len() as u64);
         let summaries = summaries(&self, costs, limits.max_leaf, cx)?;
         let arranger = Arranger { from: &self, summaries: &summaries, geometry, limits, cx };
-        Ok(cx.pool.run(|| arranger.subtree(0, 0))?.joined())
+        let arranged = cx.pool.run(|| arranger.subtree(0, 0))?;
+        // The nodes are to exist no more than twice.
+        drop((summaries, self));
+        Ok(arranged.joined())
     }
 }
 
