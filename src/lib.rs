@@ -3,7 +3,7 @@
 //! The layers, each using only those before it (`tests/layering.rs` holds them to it):
 //!
 //! ```text
-//! task, sys → geometry, simd → scene → accel → render → lab → job → {cli, viewer} → main
+//! task, sys → simd → geometry → scene → accel → render → lab → job → {cli, viewer} → main
 //! ```
 
 pub mod accel;
@@ -14,6 +14,7 @@ pub mod job;
 pub mod lab;
 pub mod render;
 pub mod scene;
+pub mod simd;
 pub mod sys;
 pub mod task;
 #[cfg(feature = "viewer")]

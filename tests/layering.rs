@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// In order; layers in one entry do not know each other.
 const LAYERS: &[&[&str]] =
-    &[&["task", "sys"], &["geometry", "simd"], &["scene"], &["accel"], &["render"], &["lab"], &["job"], &["cli", "viewer"]];
+    &[&["task", "sys"], &["simd"], &["geometry"], &["scene"], &["accel"], &["render"], &["lab"], &["job"], &["cli", "viewer"]];
 
 /// `task` asks `sys` how large the machine is.
 const ALLOWED: &[(&str, &str)] = &[("task", "sys"), ("cli", "viewer")];

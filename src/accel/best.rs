@@ -47,7 +47,7 @@ impl Best {
     }
 
     /// Tests a triangle and keeps the hit if it is closer, or as close with a lower index. True if
-    /// the search is over, which happens for [`Query::ANY`] only.
+    /// the search is over, which happens where [`Query::any`] hit will do.
     #[inline(always)]
     pub fn test<T: TriTest, Q: Query, P: Probe>(
         &mut self,
@@ -65,7 +65,7 @@ impl Best {
         let closer = hit.t < self.hit.t || prim < self.hit.prim;
         if closer && query.accept(&hit) {
             self.hit = hit;
-            return Q::ANY;
+            return query.any();
         }
         false
     }

@@ -41,8 +41,8 @@ pub enum Mode {
 
 /// The question as a type, so that each answer has a loop of its own.
 pub trait Query: Copy + Sync {
-    /// The first hit found will do.
-    const ANY: bool;
+    /// Whether the first hit found will do.
+    fn any(&self) -> bool;
 
     /// Whether a hit counts (an alpha test, say).
     #[inline(always)]
@@ -56,28 +56,41 @@ pub trait Query: Copy + Sync {
 #[derive(Clone, Copy, Debug)]
 pub struct Closest;
 
-/// Any hit.
-#[derive(Clone, Copy, Debug)]
-pub struct AnyHit;
-
-/// Nothing counts as a hit, so nothing cuts the traversal short: what the surface area heuristic
-/// assumes of a ray. For counting only.
-#[derive(Clone, Copy, Debug)]
-pub struct Nothing;
-
-impl Query for Nothing {
-    const ANY: bool = false;
-
+impl Query for Closest {
     #[inline(always)]
-    fn accept(&self, _: &PrimHit) -> bool {
+    fn any(&self) -> bool {
         false
     }
 }
 
-impl Query for Closest {
-    const ANY: bool = false;
-}
+/// Any hit.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyHit;
 
 impl Query for AnyHit {
-    const ANY: bool = true;
+    #[inline(always)]
+    fn any(&self) -> bool {
+        true
+    }
+}
+
+/// A question that is settled when it is asked, for rays that are watched and not timed: they all
+/// share one loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// As in [`Mode`].
+    Mode(Mode),
+    /// Nothing counts as a hit, so nothing cuts the traversal short: what the surface area heuristic
+    /// assumes of a ray.
+    Nothing,
+}
+
+impl Query for Asked {
+    fn any(&self) -> bool {
+        *self == Self::Mode(Mode::Any)
+    }
+
+    fn accept(&self, _: &PrimHit) -> bool {
+        *self != Self::Nothing
+    }
 }

@@ -22,10 +22,11 @@ pub mod registry;
 pub mod stats;
 pub mod validate;
 pub mod volumes;
+mod wide;
 
 pub use build::{BuildCx, BuildError};
 pub use cell::{Cell, CellId, CellKind, Cells, MemoryPart, Shape, Split};
-pub use hit::{AnyHit, Closest, Hit, Mode, Nothing, PrimHit, Query};
+pub use hit::{AnyHit, Asked, Closest, Hit, Mode, PrimHit, Query};
 pub use probe::{Prune, Step};
 
 use std::sync::Arc;
@@ -41,7 +42,7 @@ pub trait Structure: Cells + Sized + 'static {
     fn geometry(&self) -> &Arc<Geometry>;
 
     /// Traces one ray: the closest accepted hit in the closed `[tmin, tmax]`, ties in t going to
-    /// the lowest primitive; for `Q::ANY` any accepted hit.
+    /// the lowest primitive; any accepted hit where that will do.
     fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit>;
 
     /// The same for a ray that is watched and may be given up. The default looks at `cancel` once; a
@@ -131,6 +132,20 @@ impl<S: Structure> Accel for S {
 
     fn trace(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<Traced, Cancelled> {
         debug_assert_eq!(rays.len(), hits.len());
+        if let ([ray], [hit]) = (rays, &mut *hits) {
+            cancel.check()?;
+            let mut traced = Traced::default();
+            *hit =
+                match mode {
+                    Mode::Closest => in_scaled_space(Structure::geometry(self), ray, &mut traced, |ray| {
+                        Ok(self.trace_one(ray, &Closest, &mut Off))
+                    }),
+                    Mode::Any => in_scaled_space(Structure::geometry(self), ray, &mut traced, |ray| {
+                        Ok(self.trace_one(ray, &AnyHit, &mut Off))
+                    }),
+                }?;
+            return Ok(traced);
+        }
         match mode {
             Mode::Closest => self.trace_batch(rays, &Closest, hits, cancel),
             Mode::Any => self.trace_batch(rays, &AnyHit, hits, cancel),
@@ -138,15 +153,13 @@ impl<S: Structure> Accel for S {
     }
 
     fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>, cancel: &Cancel) -> Result<Option<Hit>, Cancelled> {
-        let local = |ray: &Ray| match mode {
-            Mode::Closest => self.trace_stoppable(ray, &Closest, watched, cancel),
-            Mode::Any => self.trace_stoppable(ray, &AnyHit, watched, cancel),
-        };
+        let local = |ray: &Ray| self.trace_stoppable(ray, &Asked::Mode(mode), watched, cancel);
         in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local)
     }
 
     fn count_uncut(&self, ray: &Ray, counts: &mut Counts, cancel: &Cancel) -> Result<(), Cancelled> {
-        let local = |ray: &Ray| self.trace_stoppable(ray, &Nothing, counts, cancel);
+        let mut watched = Watched { counts, listener: None };
+        let local = |ray: &Ray| self.trace_stoppable(ray, &Asked::Nothing, &mut watched, cancel);
         in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local).map(|_| ()) // there is no hit
     }
 }

@@ -7,6 +7,8 @@ use crate::scene::PrimRef;
 pub trait Probe {
     /// Whether steps are heard: finding out why a node is left out costs something.
     const LISTENS: bool = false;
+    /// Whether anything is heard or counted at all.
+    const WATCHES: bool = true;
 
     /// The node or cell entered next, by its number in [`super::CellId`].
     #[inline(always)]
@@ -133,7 +135,9 @@ impl Probe for Watched<'_> {
 #[derive(Clone, Copy, Debug)]
 pub struct Off;
 
-impl Probe for Off {}
+impl Probe for Off {
+    const WATCHES: bool = false;
+}
 
 /// How much a traversal did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::params::{Param, ParamValues};
-use super::{Accel, BuildCx, BuildError, brute, bsp, bvh, grid, kdtree, octree, volumes};
+use super::{Accel, BuildCx, BuildError, brute, bsp, bvh, grid, kdtree, octree, volumes, wide};
 use crate::geometry::tri::{Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 
@@ -102,6 +102,16 @@ pub const ALL: &[Entry] = &[
         params: bvh::PARAMS,
         watertight: bvh::build::<Watertight>,
         fast: bvh::build::<Fast>,
+    },
+    Entry {
+        id: "wide",
+        name: "Wide BVH",
+        short: "Wide",
+        family: Family::Bvh,
+        help: "The tree of the BVH with eight children a node, all met at once, and many rays on their way at a time.",
+        params: wide::PARAMS,
+        watertight: wide::build::<Watertight>,
+        fast: wide::build::<Fast>,
     },
     Entry {
         id: "volumes",

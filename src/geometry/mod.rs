@@ -24,5 +24,5 @@ pub use degenerate::has_zero_area;
 pub use line::Line;
 pub use overlap::triangle_overlaps_box;
 pub use ray::Ray;
-pub use slabs::Slabs;
+pub use slabs::{Sides, Slabs};
 pub use space::Space;

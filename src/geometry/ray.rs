@@ -36,7 +36,11 @@ impl Ray {
 
     /// Whether the ray can hit anything: finite origin and direction, a direction other than zero,
     /// and `0 <= tmin <= tmax`. A ray that is not valid misses everything and is counted.
+    #[inline]
     pub fn is_valid(&self) -> bool {
-        self.origin.is_finite() && self.dir.is_finite() && self.dir != Vec3::ZERO && 0.0 <= self.tmin && self.tmin <= self.tmax
+        // A number times zero is zero, unless it is infinite or none.
+        let zeros = self.origin * 0.0 + self.dir * 0.0;
+        let finite = zeros.x + zeros.y + zeros.z == 0.0;
+        finite & (self.dir != Vec3::ZERO) & (0.0 <= self.tmin) & (self.tmin <= self.tmax)
     }
 }

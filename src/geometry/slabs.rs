@@ -15,55 +15,74 @@
 
 use super::num::UNIT_ROUNDOFF;
 use super::{Aabb, Ray};
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 /// What box tests need of a ray, worked out once.
 #[derive(Clone, Copy, Debug)]
 pub struct Slabs {
     /// `o + e`, subtracted from the minimum planes.
-    o_lo: Vec3,
+    o_lo: Vec3A,
     /// `o - e`, subtracted from the maximum planes.
-    o_hi: Vec3,
+    o_hi: Vec3A,
     /// One over the direction, always finite and never zero.
-    inv: Vec3,
+    inv: Vec3A,
+}
+
+/// The same by axis, for tests of many boxes: the nearer plane of an axis is met at
+/// `(near - plane) * minus_inv`, the farther one at `(far - plane) * minus_inv`, which are to the bit the
+/// lesser and the greater of what [`Slabs::interval`] compares.
+#[derive(Clone, Copy, Debug)]
+pub struct Sides {
+    /// One bit for each axis on which the ray runs towards smaller values, and meets the greatest plane
+    /// first.
+    pub backward: u32,
+    /// From what to subtract the nearer plane.
+    pub near: Vec3A,
+    /// From what to subtract the farther plane.
+    pub far: Vec3A,
+    /// Minus one over the direction, finite and not zero.
+    pub minus_inv: Vec3A,
 }
 
 /// Directions below this (of a ray whose greatest component is about 1) count as parallel.
 const PARALLEL: f32 = 1.0 / (1u128 << 100) as f32;
 /// Stands for the reciprocal of a zero component: any plane not passed is far outside every t.
 const PARALLEL_INV: f32 = (1u128 << 120) as f32;
-/// The least widening on an axis the ray is parallel to, so that the box is closed on both sides.
-const PARALLEL_PAD: f32 = 1.0 / (1u64 << 40) as f32;
+/// The least widening, so that a box is closed on both sides for a ray along a face of it: together with
+/// `2u|o|`, at least an ulp of the origin, it keeps `o_lo` above and `o_hi` below the origin.
+const LEAST_PAD: f32 = 1.0 / (1u64 << 40) as f32;
 
 impl Slabs {
     /// For a ray and a scene inside `bounds`.
+    #[inline(always)]
     pub fn new(ray: &Ray, bounds: &Aabb) -> Self {
-        let pad = Self::pad(ray.origin, bounds);
-        let mut slabs = Self { o_lo: ray.origin + pad, o_hi: ray.origin - pad, inv: Vec3::ONE };
-        for k in 0..3 {
-            if ray.dir[k].abs() < PARALLEL {
-                let (o, e) = (ray.origin[k], pad[k].max(PARALLEL_PAD));
-                slabs.o_lo[k] = o.next_up().max(o + e);
-                slabs.o_hi[k] = o.next_down().min(o - e);
-                slabs.inv[k] = PARALLEL_INV;
-            } else {
-                slabs.inv[k] = 1.0 / ray.dir[k];
-            }
-        }
-        slabs
+        // The three axes in one register and no branch: this is done for every ray.
+        let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
+        let pad = Self::pad_of(origin, bounds);
+        let parallel = dir.abs().cmplt(Vec3A::splat(PARALLEL));
+        let inv = Vec3A::select(parallel, Vec3A::splat(PARALLEL_INV), Vec3A::ONE / dir);
+        Self { o_lo: origin + pad, o_hi: origin - pad, inv }
     }
 
     /// The widening `e` for rays from `origin`, per axis.
     pub fn pad(origin: Vec3, bounds: &Aabb) -> Vec3 {
-        let reach = (bounds.max - origin).abs().max((bounds.min - origin).abs()).max_element();
-        Vec3::splat(12.0 * UNIT_ROUNDOFF * reach) + 2.0 * UNIT_ROUNDOFF * origin.abs()
+        Self::pad_of(origin.into(), bounds).into()
+    }
+
+    #[inline(always)]
+    fn pad_of(origin: Vec3A, bounds: &Aabb) -> Vec3A {
+        let (min, max) = (Vec3A::from(bounds.min), Vec3A::from(bounds.max));
+        let reach = (max - origin).abs().max((min - origin).abs()).max_element();
+        let pad = Vec3A::splat(12.0 * UNIT_ROUNDOFF * reach) + 2.0 * UNIT_ROUNDOFF * origin.abs();
+        pad.max(Vec3A::splat(LEAST_PAD))
     }
 
     /// The t at which the ray enters and leaves the box. It misses if the first exceeds the second.
     #[inline(always)]
     pub fn interval(&self, b: &Aabb) -> (f32, f32) {
-        let lo = (b.min - self.o_lo) * self.inv;
-        let hi = (b.max - self.o_hi) * self.inv;
+        let (o_lo, o_hi, inv) = (Vec3::from(self.o_lo), Vec3::from(self.o_hi), Vec3::from(self.inv));
+        let lo = (b.min - o_lo) * inv;
+        let hi = (b.max - o_hi) * inv;
         let entry = max(max(min(lo.x, hi.x), min(lo.y, hi.y)), min(lo.z, hi.z));
         let exit = min(min(max(lo.x, hi.x), max(lo.y, hi.y)), max(lo.z, hi.z));
         (entry, exit)
@@ -82,6 +101,18 @@ impl Slabs {
     #[inline(always)]
     pub fn backward(&self, axis: usize) -> bool {
         self.inv[axis] < 0.0
+    }
+
+    /// Sorted by which plane of an axis the ray meets first.
+    #[inline(always)]
+    pub fn sides(&self) -> Sides {
+        let backward = self.inv.cmplt(Vec3A::ZERO);
+        Sides {
+            backward: backward.bitmask(),
+            near: Vec3A::select(backward, self.o_hi, self.o_lo),
+            far: Vec3A::select(backward, self.o_lo, self.o_hi),
+            minus_inv: -self.inv,
+        }
     }
 }
 

@@ -22,8 +22,12 @@ pub const FAR: f64 = 8.0;
 pub struct Space {
     /// Scaled coordinate = world coordinate times this power of two.
     scale: f64,
+    /// It and one over it, if 32 bits hold both.
+    narrow: Option<(f32, f32)>,
     /// The bounds of the scene, scaled.
     bounds: Aabb,
+    /// The same and [`FAR`] extents around them.
+    surroundings: Aabb,
 }
 
 /// A ray in the scaled space, with what turns its t back into the world's.
@@ -36,6 +40,9 @@ pub struct Entered {
 }
 
 impl Entered {
+    /// No ray.
+    pub const NOWHERE: Self = Self { ray: Ray::new(Vec3::ZERO, Vec3::X), t_offset: 0.0, t_scale: 1.0 };
+
     /// The world's t of a t of [`Self::ray`].
     #[inline]
     pub fn world_t(&self, t: f32) -> f32 {
@@ -47,7 +54,7 @@ impl Space {
     /// The space for a scene that lies in `world_bounds` (finite, or empty).
     pub fn new(world_bounds: &Aabb) -> Self {
         if world_bounds.is_empty() {
-            return Self { scale: 1.0, bounds: Aabb { min: Vec3::ZERO, max: Vec3::ZERO } };
+            return Self::of(1.0, Aabb { min: Vec3::ZERO, max: Vec3::ZERO });
         }
         let size = (world_bounds.max.as_dvec3() - world_bounds.min.as_dvec3()).max_element();
         let far = world_bounds.min.as_dvec3().abs().max(world_bounds.max.as_dvec3().abs()).max_element();
@@ -55,9 +62,14 @@ impl Space {
         let scale = if extent > 0.0 { power_of_two_at_most(1.0 / extent) } else { 1.0 };
         // Far from the origin the coordinates outgrow the extent; they must still be finite.
         let scale = if far * scale > 1e30 { power_of_two_at_most(1e30 / far) } else { scale };
-        let mut space = Self { scale, bounds: *world_bounds };
-        space.bounds = Aabb { min: space.point(world_bounds.min), max: space.point(world_bounds.max) };
-        space
+        let scaled = |p: Vec3| (p.as_dvec3() * scale).as_vec3();
+        Self::of(scale, Aabb { min: scaled(world_bounds.min), max: scaled(world_bounds.max) })
+    }
+
+    fn of(scale: f64, bounds: Aabb) -> Self {
+        let far = Vec3::splat(narrow(FAR * extent(&bounds)));
+        let surroundings = Aabb { min: bounds.min - far, max: bounds.max + far };
+        Self { scale, narrow: PowerOfTwo { value: scale, inverse: 1.0 / scale }.narrow(), bounds, surroundings }
     }
 
     /// The power of two that world lengths are multiplied by.
@@ -85,28 +97,46 @@ impl Space {
     /// A valid world ray in this space.
     #[inline]
     pub fn enter(&self, ray: &Ray) -> Entered {
+        let up = to_at_most_one(ray.dir.abs().max_element());
+        // Products with powers of two that 32 bits hold are what 64 bits would be rounded to.
+        if let (Some((scale, unscale)), Some((up, down))) = (self.narrow, up.narrow()) {
+            let origin = ray.origin * scale;
+            let t_unscale = down * scale;
+            if self.is_near(origin) && (MIN..=MAX).contains(&t_unscale) {
+                let ray = Ray { origin, dir: ray.dir * up, tmin: ray.tmin * t_unscale, tmax: ray.tmax * t_unscale };
+                return Entered { ray, t_offset: 0.0, t_scale: f64::from(up) * f64::from(unscale) };
+            }
+        }
+        self.enter_from_afar(ray, up)
+    }
+
+    /// The same for any origin and any scale.
+    #[cold]
+    fn enter_from_afar(&self, ray: &Ray, up: PowerOfTwo) -> Entered {
         let origin = ray.origin.as_dvec3() * self.scale;
-        let largest = ray.dir.abs().max_element();
-        let up = power_of_two_at_most(1.0 / f64::from(largest));
-        let dir = ray.dir.as_dvec3() * up;
+        let dir = ray.dir.as_dvec3() * up.value;
         // world t = t of this space * t_scale: lengths grow by `scale`, the direction by `up`.
-        let t_scale = up / self.scale;
-        let t_offset = self.approach(origin, dir);
+        let t_scale = up.value / self.scale;
+        let near = self.is_near(origin.as_vec3());
+        let t_offset = if near { 0.0 } else { self.approach(origin, dir) };
         let moved = if t_offset > 0.0 { origin + dir * t_offset } else { origin };
         let t = |world: f32| narrow(f64::from(world) / t_scale - t_offset);
         let tmin = t(ray.tmin).max(0.0);
         Entered { ray: Ray { origin: moved.as_vec3(), dir: dir.as_vec3(), tmin, tmax: t(ray.tmax) }, t_offset, t_scale }
     }
 
+    /// Whether an origin is within [`FAR`] extents of the box.
+    #[inline(always)]
+    fn is_near(&self, origin: Vec3) -> bool {
+        origin.cmpge(self.surroundings.min).all() && origin.cmple(self.surroundings.max).all()
+    }
+
     /// How far along the ray to move a far origin: to two extents before the point nearest to the
-    /// scene's centre; 0 for an origin that is near.
+    /// scene's centre.
+    #[cold]
     fn approach(&self, origin: DVec3, dir: DVec3) -> f64 {
         let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
-        let extent = (max - min).max_element().max(f64::MIN_POSITIVE);
-        let away = (min - origin).max(origin - max).max_element();
-        if away <= FAR * extent {
-            return 0.0;
-        }
+        let extent = extent(&self.bounds);
         let along = (0.5 * (min + max) - origin).dot(dir) / dir.length_squared();
         let before = 2.0 * extent / dir.length();
         // The box lies within one diagonal of the nearest point; the rest is margin.
@@ -118,6 +148,40 @@ impl Space {
 fn power_of_two_at_most(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7FF0_0000_0000_0000;
     f64::from_bits(x.clamp(f64::MIN_POSITIVE, 1e300).to_bits() & EXPONENT)
+}
+
+/// The longest edge, not zero.
+fn extent(bounds: &Aabb) -> f64 {
+    (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element().max(f64::MIN_POSITIVE)
+}
+
+/// A power of two, and one over it.
+#[derive(Clone, Copy, Debug)]
+struct PowerOfTwo {
+    value: f64,
+    inverse: f64,
+}
+
+/// The least and the greatest power of two whose inverse is a normal number, too.
+const MIN: f32 = 1.0 / (1u128 << 126) as f32;
+const MAX: f32 = (1u128 << 126) as f32;
+
+impl PowerOfTwo {
+    /// Both in 32 bits, if they are normal numbers there.
+    #[inline(always)]
+    fn narrow(self) -> Option<(f32, f32)> {
+        (f64::from(MIN)..=f64::from(MAX)).contains(&self.value).then_some((narrow(self.value), narrow(self.inverse)))
+    }
+}
+
+/// The greatest power of two that brings `x` (positive and finite) to at most 1.
+#[inline(always)]
+fn to_at_most_one(x: f32) -> PowerOfTwo {
+    const MANTISSA: u32 = 52;
+    const BIAS: u64 = 1023;
+    let bits = f64::from(x).to_bits();
+    let up_to = (bits >> MANTISSA) + u64::from(bits << (64 - MANTISSA) != 0);
+    PowerOfTwo { value: f64::from_bits((2 * BIAS - up_to) << MANTISSA), inverse: f64::from_bits(up_to << MANTISSA) }
 }
 
 #[cfg(test)]
@@ -146,6 +210,34 @@ mod tests {
         let t = entered.ray.origin.x - 0.5; // to the plane x = 1, at 0.5 once scaled
         assert_eq!(entered.world_t(t), 1e6 - 1.0);
         assert_eq!(entered.ray.origin.y, 0.125);
+    }
+
+    #[test]
+    fn the_power_of_two_is_the_greatest_that_keeps_to_one() {
+        for x in [1.0, 0.75, 2.0, 3.0, 1e-45, f32::MAX, 1e-38, 0.999_999_94, 1.000_000_1] {
+            let up = to_at_most_one(x);
+            assert_eq!(up.value, power_of_two_at_most(1.0 / f64::from(x)), "{x}");
+            assert_eq!(up.value * up.inverse, 1.0);
+            assert!(f64::from(x) * up.value <= 1.0 && f64::from(x) * up.value > 0.5);
+        }
+    }
+
+    #[test]
+    fn the_short_way_is_the_long_way() {
+        let world = Aabb { min: Vec3::new(-3.0, 1.0, 20.0), max: Vec3::new(7.0, 1.5, 29.0) };
+        for k in [-100, -60, 0, 1, 60, 100] {
+            let s = 2.0f32.powi(k);
+            let space = Space::new(&Aabb { min: world.min * s, max: world.max * s });
+            for (dir, tmin, tmax) in
+                [(Vec3::new(0.3, -1e-30, 5.0), 0.1, 7.7), (Vec3::new(-1e-42, 3e-39, 0.0), 0.0, f32::INFINITY)]
+            {
+                for origin in [Vec3::new(1.0, 1.2, 22.0), Vec3::new(-1e-3, 60.0, 1e-41)] {
+                    let ray = Ray { origin: origin * s, dir, tmin: tmin * s, tmax: tmax * s };
+                    let (short, long) = (space.enter(&ray), space.enter_from_afar(&ray, to_at_most_one(dir.abs().max_element())));
+                    assert_eq!((short.ray, short.t_offset, short.t_scale), (long.ray, long.t_offset, long.t_scale), "{ray:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@
 //! ```
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::tile::Job;
 use super::{Development, Film, Mode, Picture, Progress, Range, auto_range};
@@ -105,6 +105,19 @@ impl Renderer {
     /// The newest picture.
     pub fn picture(&self) -> Option<Arc<Picture>> {
         self.shared.lock().picture.clone()
+    }
+
+    /// Holds on until there is a picture of a request or of a later one, or `patience` is at its end.
+    pub fn wait_for(&self, request: u64, patience: Duration) {
+        let end = Instant::now() + patience;
+        let mut state = self.shared.lock();
+        while state.picture.as_ref().is_none_or(|picture| picture.request < request) && state.pauses == 0 {
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return;
+            }
+            state = self.shared.wake.wait_timeout(state, left).unwrap_or_else(PoisonError::into_inner).0;
+        }
     }
 
     /// Stops rendering until the guard is dropped; returns at once.
@@ -296,6 +309,7 @@ impl<N: Fn()> Worker<N> {
             state.picture = Some(Arc::new(picture));
         }
         drop(state);
+        self.shared.wake.notify_all();
         (self.notify)();
         Ok(())
     }

@@ -1,5 +1,9 @@
 //! What the machine is: its memory, its processor, its files. System calls live here and nowhere else.
 
+mod pages;
+
+pub use pages::list_in_large_pages;
+
 use std::path::Path;
 
 /// Bytes of memory that this process may count on: the machine's, or the container's where that

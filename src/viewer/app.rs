@@ -8,6 +8,7 @@ use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, RichText, 
 use super::command::Command;
 use super::dialogs::{FileDialog, SystemDialog};
 use super::gpu;
+use super::graphics::Graphics;
 use super::options::ViewerOptions;
 use super::pace::Pace;
 use super::panels::{self, Commands};
@@ -22,9 +23,6 @@ use crate::task::{Budget, Pool};
 const SETTINGS: &str = "settings";
 /// What opens when nothing else was asked for.
 const FIRST_SCENE: &str = "builtin:lecture";
-
-/// The most boxes that are collected where nothing can draw them.
-const BOXES_UNSEEN: usize = 1000;
 
 /// The program's window.
 pub struct App {
@@ -57,10 +55,9 @@ impl App {
         theme::apply(&cc.egui_ctx);
         // The enlargement is a setting of ours, under the same keys.
         cc.egui_ctx.options_mut(|o| o.zoom_with_keyboard = false);
-        let box_limit = cc.wgpu_render_state.as_ref().map_or(BOXES_UNSEEN, |render_state| {
+        if let Some(render_state) = &cc.wgpu_render_state {
             gpu::install(render_state);
-            gpu::comfortable_boxes(render_state)
-        });
+        }
         let stored: Option<Settings> = cc.storage.and_then(|s| eframe::get_value(s, SETTINGS));
         let mut settings = if options.is_scripted() { Settings::default() } else { stored.unwrap_or_default() };
         options.apply(&mut settings);
@@ -68,7 +65,7 @@ impl App {
         let ctx = cc.egui_ctx.clone();
         let budget = options.memory_bytes.map_or_else(Budget::half_of_machine, Budget::new);
         let shared = Shared { pool: Pool::new("work", options.threads), budget, wake: Arc::new(move || ctx.request_repaint()) };
-        let mut state = State::new(settings, shared, dialog, box_limit)?;
+        let mut state = State::new(settings, shared, dialog, Graphics::of(cc.wgpu_render_state.as_ref()))?;
         state.first_camera = options.camera;
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, options.measure, options.pace));
@@ -92,7 +89,6 @@ impl App {
     }
 
     fn carry_out(&mut self, ctx: &Context) {
-        panels::menu::keys(ctx, &self.state, &mut self.commands);
         for command in std::mem::take(&mut self.commands) {
             match command {
                 Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
@@ -173,6 +169,12 @@ impl App {
     }
 }
 
+/// Whether this is the second pass over a frame, with the same input: what the hands did to the camera
+/// in the first is to be seen in this frame, not in the next.
+fn is_repeated(ctx: &Context) -> bool {
+    ctx.current_pass_index() > 0
+}
+
 /// The message that something went wrong, until it is put away.
 fn error(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let Some(error) = &state.error else { return };
@@ -193,10 +195,13 @@ fn error(ui: &mut Ui, state: &State, commands: &mut Commands) {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
-        self.take_dropped(ctx);
+        if !is_repeated(ctx) {
+            self.take_dropped(ctx);
+            panels::menu::keys(ctx, &self.state, &mut self.commands);
+        }
         self.carry_out(ctx);
         self.state.advance();
-        if let Some(screenshot) = &mut self.screenshot {
+        if let Some(screenshot) = self.screenshot.as_mut().filter(|_| !is_repeated(ctx)) {
             screenshot.advance(ctx, &self.state, &mut self.pace, &mut self.commands);
         }
         // Progress bars move; everything else wakes the window itself.
@@ -207,7 +212,9 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ui_secs = frame.info().cpu_usage.map(f64::from);
-        self.pace.frame(ui_secs, &self.state);
+        if !is_repeated(ui.ctx()) {
+            self.pace.frame(ui_secs, &self.state);
+        }
         Panel::top(self.panel("menu"))
             .exact_size(theme::TOP_BAR)
             .show(ui, |ui| panels::menu::show(ui, &self.state, &mut self.commands));
@@ -218,6 +225,12 @@ impl eframe::App for App {
         self.centre(ui);
         panels::help::show(ui, &self.state, &mut self.commands);
         panels::path::show(ui, &self.state, &mut self.commands);
+        if is_repeated(ui.ctx()) {
+            // The same hands were seen in the first pass.
+            self.commands.clear();
+        } else if self.commands.iter().any(|command| matches!(command, Command::Camera(_))) {
+            ui.ctx().request_discard("the camera moved");
+        }
         if !self.commands.is_empty() {
             ui.ctx().request_repaint();
         }

@@ -6,6 +6,7 @@ pub mod command;
 pub mod dialogs;
 pub mod format;
 pub mod gpu;
+mod graphics;
 pub mod history;
 mod kept;
 mod marks;

@@ -11,8 +11,9 @@ use super::probe::{Off, Probe};
 use super::{BuildCx, BuildError, Hit, PrimHit, Query, Structure, Traced, in_scaled_space};
 use crate::geometry::Ray;
 use crate::geometry::num;
-use crate::geometry::tri::{Block, LANES, TriTest};
+use crate::geometry::tri::{Block, Eight, TriTest};
 use crate::scene::{Geometry, PrimRef};
+use crate::simd::{LANES, Portable};
 use crate::task::{Cancel, Cancelled, Charge};
 use rayon::prelude::*;
 
@@ -93,7 +94,7 @@ impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
         best: &mut Best,
     ) -> bool {
         let lanes = LANES.min(self.geometry.live_count() - first);
-        let mut left = test.may_meet(block) & ((1 << lanes) - 1);
+        let mut left = test.may_meet(Portable, block) & ((1 << lanes) - 1);
         // The others were tested, too, and missed.
         (left.count_ones()..num::index(lanes)).for_each(|_| probe.prim());
         while left != 0 {

@@ -21,7 +21,7 @@ use crate::accel::params::ParamValues;
 use crate::accel::{BuildCx, BuildError};
 use crate::geometry::num;
 use crate::scene::Geometry;
-use crate::task::OverBudget;
+use crate::task::{Charge, OverBudget};
 
 /// What the parameters ask for.
 struct Plan {
@@ -80,11 +80,24 @@ impl Plan {
     }
 }
 
-/// Builds a BVH over all live triangles.
+/// What a builder made, before it is packed for a traversal.
+#[derive(Debug)]
+pub struct Drafted {
+    /// The tree.
+    pub draft: Draft,
+    /// Whether leaves hold parts of triangles, which may then be in several.
+    pub splits: bool,
+    /// What the builder decided by itself, in words for the user.
+    pub remarks: Vec<String>,
+    /// The memory that building takes at most, what is made of it by [`build`] included.
+    pub peak: Charge,
+}
+
+/// Builds a tree over all live triangles.
 ///
 /// # Errors
 /// Cancelled, or over the memory budget.
-pub fn build(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Built, BuildError> {
+pub fn draft(geometry: &Geometry, p: &ParamValues, cx: &BuildCx) -> Result<Drafted, BuildError> {
     let n = geometry.live_count();
     let mut plan = Plan::of(p, n);
     if n + plan.allowance > num::MAX_INDEX / 2 {
@@ -95,13 +108,21 @@ pub fn build(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<
     cx.progress.start("bound", n as u64);
     let prims = prim_boxes(geometry, cx)?;
     let draft = if n == 0 { Draft { nodes: Vec::new(), refs: Vec::new() } } else { plan.draft(geometry, prims, cx)? };
+    Ok(Drafted { draft, splits: plan.builder == Builder::Sbvh, remarks: plan.remarks, peak })
+}
+
+/// Builds a BVH over all live triangles, and packs them.
+///
+/// # Errors
+/// Cancelled, or over the memory budget.
+pub fn build(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Built, BuildError> {
+    let Drafted { draft, splits, remarks, peak } = draft(geometry, p, cx)?;
     cx.progress.start("pack", draft.refs.len() as u64);
     let packed = draft.pack(geometry, cx)?;
     drop(peak);
     let bytes = draft.nodes.capacity() * size_of::<Node>() + size_of_val(&packed[..]);
     let charge = cx.budget.charge(bytes as u64).map_err(too_large)?;
-    let splits = plan.builder == Builder::Sbvh;
-    Ok(Built { geometry: Arc::clone(geometry), nodes: draft.nodes, packed, splits, remarks: plan.remarks, _charge: charge })
+    Ok(Built { geometry: Arc::clone(geometry), nodes: draft.nodes, packed, splits, remarks, _charge: charge })
 }
 
 fn too_large(over: OverBudget) -> BuildError {

@@ -24,6 +24,8 @@ mod sweep;
 mod topdown;
 mod tree;
 
+pub use build::Drafted;
+pub use draft::Draft;
 pub use tree::{Built, MAX_DEPTH, Node, Packed};
 
 use std::sync::Arc;
@@ -130,11 +132,20 @@ pub const PARAMS: &[Param] = &[
 /// The bare tree, for structures that put something else around its nodes. Parameters that they do
 /// not have are at their defaults.
 pub fn tree(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Built, BuildError> {
+    build::build(geometry, &completed(p), cx)
+}
+
+/// The same before it is packed, for structures that pack it in their own way.
+pub fn draft(geometry: &Geometry, p: &ParamValues, cx: &BuildCx) -> Result<Drafted, BuildError> {
+    build::draft(geometry, &completed(p), cx)
+}
+
+fn completed(p: &ParamValues) -> ParamValues {
     let mut all = ParamValues::defaults(PARAMS);
     for (param, value) in all.iter_mut() {
         *value = p.iter().find(|(given, _)| given.id == param.id).map_or(*value, |(_, given)| given);
     }
-    build::build(geometry, &all, cx)
+    all
 }
 
 /// Builds and puts the traversal together that the parameters ask for.

@@ -7,7 +7,7 @@ use super::points;
 use super::tree::Tree;
 use super::volume::{Loose, Volume};
 use crate::accel::probe::Probe;
-use crate::accel::{Accel, AnyHit, Closest, Mode, PrimHit, Query, Structure, Traced, in_scaled_space};
+use crate::accel::{Accel, Asked, Mode, PrimHit, Query, Structure, Traced, in_scaled_space};
 use crate::geometry::tri::TriTest;
 use crate::geometry::{Line, Ray};
 use crate::scene::PrimRef;
@@ -78,7 +78,9 @@ pub trait Volumes: Accel {
 struct Every<'a>(&'a Mutex<Vec<PrimRef>>);
 
 impl Query for Every<'_> {
-    const ANY: bool = false;
+    fn any(&self) -> bool {
+        false
+    }
 
     fn accept(&self, hit: &PrimHit) -> bool {
         if let Ok(mut list) = self.0.lock() {
@@ -115,12 +117,7 @@ impl<T: TriTest, V: Volume> Volumes for Tree<T, V> {
     }
 
     fn watch(&self, ray: &Ray, mode: Mode, seen: &mut Seen) {
-        let walk = |ray: &Ray| {
-            Ok(match mode {
-                Mode::Closest => self.trace_one(ray, &Closest, seen),
-                Mode::Any => self.trace_one(ray, &AnyHit, seen),
-            })
-        };
+        let walk = |ray: &Ray| Ok(self.trace_one(ray, &Asked::Mode(mode), seen));
         let _ = in_scaled_space(&self.geometry, ray, &mut Traced::default(), walk);
     }
 

@@ -1,27 +1,76 @@
 //! Eight triangles side by side, and a first look at all of them at once: which ones a ray may meet.
-//! Written as loops over lanes that compilers turn into vector instructions; the operations are those
-//! of the test of one triangle, in the same order, so the look never loses a hit.
+//! The operations are those of the test of one triangle, in the same order and unfused, so the look
+//! never loses a hit.
 
+use crate::simd::{LANES, Lanes, Simd};
 use glam::Vec3;
 
-/// Triangles in a block.
-pub const LANES: usize = 8;
+/// Where the corners of eight triangles are.
+pub trait Eight {
+    /// A coordinate of a corner of all of them; lanes without a triangle hold anything.
+    fn corner<S: Simd>(&self, s: S, corner: usize, axis: usize) -> S::F;
 
-/// One number for each triangle of a block.
-pub type Lanes = [f32; LANES];
+    /// The triangle of a lane.
+    fn triangle(&self, lane: usize) -> [Vec3; 3];
+}
+
+/// Eight points.
+#[derive(Clone, Copy)]
+pub struct Points<F> {
+    x: F,
+    y: F,
+    z: F,
+}
+
+// No closures: what is inlined into a road must say so, and closures cannot.
+impl<F: Copy> Points<F> {
+    /// The same point eight times.
+    #[inline(always)]
+    pub fn splat<S: Simd<F = F>>(s: S, p: Vec3) -> Self {
+        Self { x: s.splat(p.x), y: s.splat(p.y), z: s.splat(p.z) }
+    }
+
+    /// A corner of eight triangles.
+    #[inline(always)]
+    pub fn corner<S: Simd<F = F>>(s: S, triangles: &impl Eight, corner: usize) -> Self {
+        Self { x: triangles.corner(s, corner, 0), y: triangles.corner(s, corner, 1), z: triangles.corner(s, corner, 2) }
+    }
+
+    /// From other points to these.
+    #[inline(always)]
+    pub fn minus<S: Simd<F = F>>(self, s: S, other: Self) -> Self {
+        Self { x: s.sub(self.x, other.x), y: s.sub(self.y, other.y), z: s.sub(self.z, other.z) }
+    }
+
+    /// In the order of [`Vec3::cross`].
+    #[inline(always)]
+    pub fn cross<S: Simd<F = F>>(self, s: S, other: Self) -> Self {
+        Self {
+            x: s.sub(s.mul(self.y, other.z), s.mul(other.y, self.z)),
+            y: s.sub(s.mul(self.z, other.x), s.mul(other.z, self.x)),
+            z: s.sub(s.mul(self.x, other.y), s.mul(other.x, self.y)),
+        }
+    }
+
+    /// In the order of [`Vec3::dot`].
+    #[inline(always)]
+    pub fn dot<S: Simd<F = F>>(self, s: S, other: Self) -> F {
+        s.add(s.add(s.mul(self.x, other.x), s.mul(self.y, other.y)), s.mul(self.z, other.z))
+    }
+}
 
 /// Corners by corner, axis and lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub struct Block {
-    /// `corners[corner][axis][lane]`; lanes without a triangle are zero.
-    pub corners: [[Lanes; 3]; 3],
+    /// `corners[corner][axis][lane]`.
+    corners: [[Lanes; 3]; 3],
 }
 
 impl Block {
-    /// Of at most [`LANES`] triangles.
+    /// Of at most [`LANES`] triangles; lanes without one are NaN, which no ray meets.
     pub fn new(triangles: impl IntoIterator<Item = [Vec3; 3]>) -> Self {
-        let mut block = Self { corners: [[[0.0; LANES]; 3]; 3] };
+        let mut block = Self { corners: [[[f32::NAN; LANES]; 3]; 3] };
         for (lane, tri) in triangles.into_iter().enumerate().take(LANES) {
             for (to, from) in block.corners.iter_mut().zip(tri) {
                 (0..3).for_each(|axis| to[axis][lane] = from[axis]);
@@ -29,32 +78,18 @@ impl Block {
         }
         block
     }
+}
 
-    /// The triangle of a lane.
+impl Eight for Block {
     #[inline(always)]
-    pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
+    fn corner<S: Simd>(&self, s: S, corner: usize, axis: usize) -> S::F {
+        s.load(&self.corners[corner][axis])
+    }
+
+    #[inline(always)]
+    fn triangle(&self, lane: usize) -> [Vec3; 3] {
         self.corners.each_ref().map(|c| Vec3::new(c[0][lane], c[1][lane], c[2][lane]))
     }
-}
-
-/// `f` of each lane.
-#[inline(always)]
-pub(super) fn each(f: impl Fn(usize) -> f32) -> Lanes {
-    let mut lanes = [0.0; LANES];
-    for (i, lane) in lanes.iter_mut().enumerate() {
-        *lane = f(i);
-    }
-    lanes
-}
-
-/// One bit for each lane.
-#[inline(always)]
-pub(super) fn mask(f: impl Fn(usize) -> bool) -> u32 {
-    let mut bits = [0u32; LANES];
-    for (i, bit) in bits.iter_mut().enumerate() {
-        *bit = u32::from(f(i)) << i;
-    }
-    bits.iter().fold(0, |a, b| a | b)
 }
 
 #[cfg(test)]
@@ -62,6 +97,7 @@ mod tests {
     use super::*;
     use crate::geometry::tri::{Fast, TriTest, Watertight};
     use crate::geometry::{Aabb, Ray};
+    use crate::simd::{Kernel, Portable, Road};
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = Vec3> {
@@ -70,13 +106,28 @@ mod tests {
         (x(), x(), x()).prop_map(|(x, y, z)| Vec3::new(x, y, z))
     }
 
+    struct Look<'a, T>(&'a T, &'a Block);
+
+    impl<T: TriTest> Kernel for Look<'_, T> {
+        type Out = u32;
+
+        #[inline(always)]
+        fn run<S: Simd>(self, s: S) -> u32 {
+            self.0.may_meet(s, self.1)
+        }
+    }
+
     fn loses_nothing<T: TriTest>(ray: &Ray, triangles: &[[Vec3; 3]]) -> Result<(), TestCaseError> {
         let test = T::prepare(ray, &Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE });
         let block = Block::new(triangles.iter().copied());
-        let found = test.may_meet(&block);
-        for (i, tri) in triangles.iter().enumerate() {
-            prop_assert_eq!(block.triangle(i), *tri);
-            prop_assert!(test.meet(tri).is_none() || found >> i & 1 == 1, "lane {} of {:?}", i, ray);
+        for road in Road::all() {
+            let found = road.run(Look(&test, &block));
+            for (i, tri) in triangles.iter().enumerate() {
+                prop_assert_eq!(block.triangle(i), *tri);
+                prop_assert!(test.meet(tri).is_none() || found >> i & 1 == 1, "lane {} of {:?}, {}", i, ray, road.id());
+            }
+            prop_assert_eq!(found >> triangles.len(), 0, "lanes without a triangle are met by nothing");
+            prop_assert_eq!(found, Portable.run(Look(&test, &block)));
         }
         Ok(())
     }
@@ -98,7 +149,8 @@ mod tests {
         let far = [Vec3::new(0.5, 0.5, 0.0), Vec3::new(0.6, 0.5, 0.0), Vec3::new(0.5, 0.6, 0.0)];
         let ray = Ray::new(Vec3::new(-0.5, -0.5, -1.0), Vec3::Z);
         let bounds = Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE };
-        assert_eq!(Watertight::prepare(&ray, &bounds).may_meet(&Block::new([far; LANES])), 0);
-        assert_eq!(Fast::prepare(&ray, &bounds).may_meet(&Block::new([far; LANES])), 0);
+        let block = Block::new([far; LANES]);
+        assert_eq!(Watertight::prepare(&ray, &bounds).may_meet(Portable, &block), 0);
+        assert_eq!(Fast::prepare(&ray, &bounds).may_meet(Portable, &block), 0);
     }
 }

@@ -1,8 +1,9 @@
 //! Möller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection".
 
-use super::block::{Block, Lanes, each, mask};
-use super::{TestKind, TriHit, TriTest};
+use super::block::Points;
+use super::{Eight, TestKind, TriHit, TriTest};
 use crate::geometry::{Aabb, Ray, Slabs};
+use crate::simd::Simd;
 use glam::Vec3;
 
 /// Few operations. Rays through shared edges may slip through; boxes are widened all the same, since
@@ -51,21 +52,17 @@ impl TriTest for Fast {
     }
 
     #[inline(always)]
-    fn may_meet(&self, block: &Block) -> u32 {
-        let [a, b, c] = &block.corners;
-        let d = self.dir;
-        let e1 = [0, 1, 2].map(|k| each(|i| b[k][i] - a[k][i]));
-        let e2 = [0, 1, 2].map(|k| each(|i| c[k][i] - a[k][i]));
-        let s = [0, 1, 2].map(|k| each(|i| self.origin[k] - a[k][i]));
-        let p = [(1, 2), (2, 0), (0, 1)].map(|(m, n)| each(|i| d[m] * e2[n][i] - e2[m][i] * d[n]));
-        let q = [(1, 2), (2, 0), (0, 1)].map(|(m, n)| each(|i| s[m][i] * e1[n][i] - e1[m][i] * s[n][i]));
-        let dot = |x: &[Lanes; 3], y: &[Lanes; 3]| each(|i| x[0][i] * y[0][i] + x[1][i] * y[1][i] + x[2][i] * y[2][i]);
-        let inv = dot(&e1, &p).map(|det| 1.0 / det);
-        let u = dot(&s, &p);
-        let v = each(|i| d.x * q[0][i] + d.y * q[1][i] + d.z * q[2][i]);
-        mask(|i| {
-            let (u, v) = (u[i] * inv[i], v[i] * inv[i]);
-            (0.0..=1.0).contains(&u) & (v >= 0.0) & (u + v <= 1.0)
-        })
+    fn may_meet<S: Simd>(&self, s: S, triangles: &impl Eight) -> u32 {
+        let d = Points::splat(s, self.dir);
+        let a = Points::corner(s, triangles, 0);
+        let e1 = Points::corner(s, triangles, 1).minus(s, a);
+        let e2 = Points::corner(s, triangles, 2).minus(s, a);
+        let o = Points::splat(s, self.origin).minus(s, a);
+        let (p, q) = (d.cross(s, e2), o.cross(s, e1));
+        let (zero, one) = (s.splat(0.0), s.splat(1.0));
+        let inv = s.div(one, e1.dot(s, p));
+        let u = s.mul(o.dot(s, p), inv);
+        let v = s.mul(d.dot(s, q), inv);
+        s.le(zero, u) & s.le(u, one) & s.le(zero, v) & s.le(s.add(u, v), one)
     }
 }

@@ -9,11 +9,12 @@ mod block;
 mod fast;
 mod watertight;
 
-pub use block::{Block, LANES};
+pub use block::{Block, Eight};
 pub use fast::Fast;
 pub use watertight::Watertight;
 
 use super::{Aabb, Ray, Slabs};
+use crate::simd::Simd;
 use glam::Vec3;
 
 /// Where a ray meets a triangle.
@@ -41,9 +42,9 @@ pub trait TriTest: Copy + Send + Sync + 'static {
     /// The bare test, without regard to `[tmin, tmax]` or the triangle's box. Two-sided.
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit>;
 
-    /// Which triangles of a block [`Self::meet`] may accept, a bit for each lane: all that it does
+    /// Which of eight triangles [`Self::meet`] may accept, a bit for each lane: all that it does
     /// accept are among them.
-    fn may_meet(&self, block: &Block) -> u32;
+    fn may_meet<S: Simd>(&self, s: S, triangles: &impl Eight) -> u32;
 
     /// The whole test, by the rule above.
     #[inline(always)]

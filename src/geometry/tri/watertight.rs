@@ -1,9 +1,9 @@
 //! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2:1).
 
-use super::block::{Block, each, mask};
-use super::{TestKind, TriHit, TriTest};
+use super::{Eight, TestKind, TriHit, TriTest};
 use crate::geometry::num::narrow;
 use crate::geometry::{Aabb, Ray, Slabs};
+use crate::simd::Simd;
 use glam::Vec3;
 
 /// The triangle is moved and sheared so that the ray becomes the z axis; then the signs of three
@@ -67,27 +67,31 @@ impl TriTest for Watertight {
     }
 
     #[inline(always)]
-    fn may_meet(&self, block: &Block) -> u32 {
-        let [kx, ky, kz] = self.axes;
-        let [a, b, c] = block.corners.each_ref().map(|p| {
-            let z = each(|i| p[kz][i] - self.origin[kz]);
-            let x = each(|i| (p[kx][i] - self.origin[kx]) - self.shear.x * z[i]);
-            let y = each(|i| (p[ky][i] - self.origin[ky]) - self.shear.y * z[i]);
-            (x, y)
-        });
-        let u = each(|i| c.0[i] * b.1[i] - c.1[i] * b.0[i]);
-        let v = each(|i| a.0[i] * c.1[i] - a.1[i] * c.0[i]);
-        let w = each(|i| b.0[i] * a.1[i] - b.1[i] * a.0[i]);
-        // A zero is settled in 64 bits later, and may have any sign until then.
-        mask(|i| {
-            let outside = ((u[i] < 0.0) | (v[i] < 0.0) | (w[i] < 0.0)) & ((u[i] > 0.0) | (v[i] > 0.0) | (w[i] > 0.0));
-            let zero = (u[i] == 0.0) | (v[i] == 0.0) | (w[i] == 0.0);
-            !outside | zero
-        })
+    fn may_meet<S: Simd>(&self, s: S, triangles: &impl Eight) -> u32 {
+        let a = self.sheared_corner(s, triangles, 0);
+        let b = self.sheared_corner(s, triangles, 1);
+        let c = self.sheared_corner(s, triangles, 2);
+        let u = s.sub(s.mul(c.0, b.1), s.mul(c.1, b.0));
+        let v = s.sub(s.mul(a.0, c.1), s.mul(a.1, c.0));
+        let w = s.sub(s.mul(b.0, a.1), s.mul(b.1, a.0));
+        // A zero is settled in 64 bits later; what is not zero has the right sign already.
+        let zero = s.splat(0.0);
+        let (least, greatest) = (s.min(s.min(u, v), w), s.max(s.max(u, v), w));
+        s.le(zero, least) | s.le(greatest, zero)
     }
 }
 
 impl Watertight {
+    /// The first two coordinates of a corner of eight triangles, as [`Self::sheared`].
+    #[inline(always)]
+    fn sheared_corner<S: Simd>(&self, s: S, triangles: &impl Eight, corner: usize) -> (S::F, S::F) {
+        let [kx, ky, kz] = self.axes;
+        let z = s.sub(triangles.corner(s, corner, kz), s.splat(self.origin[kz]));
+        let x = s.sub(triangles.corner(s, corner, kx), s.splat(self.origin[kx]));
+        let y = s.sub(triangles.corner(s, corner, ky), s.splat(self.origin[ky]));
+        (s.sub(x, s.mul(s.splat(self.shear.x), z)), s.sub(y, s.mul(s.splat(self.shear.y), z)))
+    }
+
     #[inline(always)]
     fn sheared(&self, p: Vec3) -> Vec3 {
         let [kx, ky, kz] = self.axes;

@@ -14,15 +14,6 @@ pub fn install(state: &RenderState) {
     state.renderer.write().callback_resources.insert(renderer);
 }
 
-/// How many boxes a viewport can show and still be redrawn fluently while the camera moves: the limit
-/// for [`super::cull`]. Few where the GPU is a program.
-pub fn comfortable_boxes(state: &RenderState) -> usize {
-    match state.adapter.get_info().device_type {
-        wgpu::DeviceType::Cpu => 1000,
-        _ => 100_000,
-    }
-}
-
 /// The size of a viewport in pixels, rounded as egui rounds it.
 pub fn size_px(rect: Rect, pixels_per_point: f32) -> [u32; 2] {
     let any_screen = [u32::MAX >> 8; 2];

@@ -35,7 +35,7 @@ use std::sync::Arc;
 
 use crate::render::Picture;
 
-pub use callback::{comfortable_boxes, install, paint, size_px};
+pub use callback::{install, paint, size_px};
 pub use cull::{Culled, Ruler, cull};
 pub use overlay::{BoxInstance, Overlay};
 pub use raster::{Raster, RasterMesh};

@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use super::command::Command;
 use super::dialogs::FileDialog;
 use super::gpu::Overlay;
+use super::graphics::Graphics;
 use super::history::{Choices, History, Kind};
 use super::kept::{Built, Kept, Key};
 use super::model::Model;
@@ -77,8 +78,8 @@ pub struct State {
     chosen_depths: (u32, u32),
     /// The viewport in pixels, as it was last drawn.
     pub size_px: [u32; 2],
-    /// The most boxes that this machine draws fluently; few where the graphics are in software.
-    box_limit: usize,
+    /// What draws the window.
+    graphics: Graphics,
     /// What is loading.
     pub loading: Option<(String, Loading)>,
     /// What is being built.
@@ -139,7 +140,7 @@ impl State {
     ///
     /// # Errors
     /// If the system grants no thread.
-    pub fn new(settings: Settings, shared: Shared, dialog: Box<dyn FileDialog>, box_limit: usize) -> std::io::Result<Self> {
+    pub fn new(settings: Settings, shared: Shared, dialog: Box<dyn FileDialog>, graphics: Graphics) -> std::io::Result<Self> {
         let wake = Arc::clone(&shared.wake);
         // One core is left to the window, so that it always finds one.
         let pool = Pool::new("trace", crate::sys::cores().saturating_sub(1).max(1));
@@ -166,7 +167,7 @@ impl State {
             asking: None,
             help: false,
             size_px: [0, 0],
-            box_limit,
+            graphics,
             loading: None,
             building: None,
             measuring: None,
@@ -209,7 +210,7 @@ impl State {
 
     /// The most triangles that this machine rasterises fluently.
     pub fn preview_limit(&self) -> usize {
-        if self.box_limit < 10_000 { 200_000 } else { usize::MAX }
+        self.graphics.comfortable_triangles()
     }
 
     /// Whether anything runs that will change what is shown.

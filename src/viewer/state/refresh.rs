@@ -45,6 +45,7 @@ impl State {
             let number = self.renderer.request(Request { job, width, height, max_samples, range: self.range });
             self.requested = Some(Asked { number, ..asked });
             self.requested_at = Instant::now();
+            self.renderer.wait_for(number, self.graphics.patience());
         }
         if let Some(picture) = self.renderer.picture() {
             self.say_what_changed(&picture);
@@ -103,7 +104,8 @@ impl State {
         }
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         let view = View::new(&self.camera, model.geometry.space(), self.aspect());
-        let wanted = Wanted { settings: self.settings.overlay, view, size_px: self.size_px, limit: self.box_limit };
+        let wanted =
+            Wanted { settings: self.settings.overlay, view, size_px: self.size_px, limit: self.graphics.comfortable_boxes() };
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
         self.overlay_is_current = current;
         let seen = self.seen.as_ref() == Some(&shown.key);

@@ -1,0 +1,124 @@
+//! The tree of eights against brute force and against itself on the plain road; every other promise is
+//! held by the conformance suite.
+
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use super::leaf::{Patch, Plain};
+use super::*;
+use crate::accel::cell::walk;
+use crate::accel::params::ParamValues;
+use crate::accel::{Accel, Cells, Hit, Mode, registry};
+use crate::geometry::Ray;
+use crate::geometry::tri::{Fast, TestKind, Watertight};
+use crate::scene::{LoadCx, open as open_scene};
+use crate::simd::Road;
+use crate::task::{Budget, Cancel, Pool, Progress};
+use glam::Vec3;
+use tree::Tree;
+
+fn geometry(model: &str) -> Arc<Geometry> {
+    let cx = LoadCx { cancel: Cancel::new(), progress: Progress::new(), budget: Budget::unlimited(), pool: Pool::new("load", 1) };
+    let scene = open_scene(model, &cx).expect("a built-in scene");
+    Arc::new(Geometry::new(&scene, &cx).ok().expect("small"))
+}
+
+fn params(set: &[(&str, &str)]) -> ParamValues {
+    let mut p = ParamValues::defaults(PARAMS);
+    set.iter().for_each(|(id, value)| p.set(id, value).expect("a parameter"));
+    p
+}
+
+/// Rays from all around the scene, and from inside it, some along the axes.
+fn rays(geometry: &Geometry) -> Vec<Ray> {
+    let b = geometry.world_bounds();
+    let (centre, size) = (b.centre(), (b.max - b.min).max_element());
+    (0..3000u16)
+        .map(|i| {
+            let a = f32::from(i) * 2.399_963;
+            let z = 1.0 - 2.0 * (f32::from(i) + 0.5) / 3000.0;
+            let r = (1.0 - z * z).sqrt();
+            let away = Vec3::new(r * a.cos(), r * a.sin(), z);
+            let aim = centre + 0.3 * size * Vec3::new((a * 3.0).sin(), (a * 5.0).sin(), (a * 7.0).sin());
+            let origin = centre + away * size * if i % 3 == 0 { 0.2 } else { 1.5 };
+            let dir = if i % 7 == 0 { Vec3::AXES[usize::from(i) % 3] } else { aim - origin };
+            Ray { tmax: if i % 5 == 0 { 0.9 } else { f32::INFINITY }, ..Ray::new(origin, dir) }
+        })
+        .collect()
+}
+
+fn trace(accel: &dyn Accel, rays: &[Ray], mode: Mode) -> Vec<Option<Hit>> {
+    let mut hits = vec![None; rays.len()];
+    accel.trace(rays, mode, &mut hits, &Cancel::new()).expect("not cancelled");
+    hits
+}
+
+/// In batches and one by one, on every road, the hits are those of brute force.
+fn equals_brute<T: TriTest, B: leaf::Pack>(model: &str, set: &[(&str, &str)], kind: TestKind) {
+    let (geometry, cx) = (geometry(model), BuildCx::unattended(2));
+    let brute = registry::find("brute").expect("registered");
+    let brute = brute.build(&geometry, kind, &brute.defaults(), &cx).expect("small");
+    let p = params(set);
+    let rays = rays(&geometry);
+    let expected = trace(&*brute, &rays, Mode::Closest);
+    assert!(expected.iter().flatten().count() > 500, "{model}: most rays miss");
+    let any = trace(&*brute, &rays, Mode::Any);
+    for road in Road::all() {
+        let drafted = bvh::draft(&geometry, &p, &cx).expect("small");
+        let mut tree: Tree<T, B> = build::build(&geometry, drafted, &p, &cx).expect("small");
+        tree.road = road;
+        assert_eq!(trace(&tree, &rays, Mode::Closest), expected, "{model}, {}", road.id());
+        let found = trace(&tree, &rays, Mode::Any);
+        assert!(found.iter().zip(&any).all(|(a, b)| a.is_some() == b.is_some()), "{model}, {}, any hit", road.id());
+        for (ray, expected) in rays.iter().zip(&expected).step_by(17) {
+            assert_eq!(trace(&tree, &[*ray], Mode::Closest), [*expected]);
+        }
+    }
+}
+
+#[test]
+fn patches_give_the_hits_of_brute_force_on_every_road() {
+    equals_brute::<Watertight, Patch>("builtin:teapot", &[], TestKind::Watertight);
+    equals_brute::<Fast, Patch>("builtin:teapot", &[("builder", "binned")], TestKind::Fast);
+    equals_brute::<Watertight, Patch>("builtin:soup?triangles=3000", &[("wide_leaf", "32")], TestKind::Watertight);
+}
+
+#[test]
+fn plain_leaves_give_the_hits_of_brute_force_on_every_road() {
+    equals_brute::<Watertight, Plain>("builtin:menger", &[], TestKind::Watertight);
+    equals_brute::<Fast, Plain>("builtin:hair?triangles=2000", &[("wide_leaf", "20")], TestKind::Fast);
+}
+
+#[test]
+fn auto_takes_patches_for_meshes_and_plain_leaves_for_soups() {
+    for (model, expected) in [("builtin:terrain?triangles=2000", "patches"), ("builtin:soup?triangles=2000", "plain")] {
+        let built = build::<Watertight>(&geometry(model), &params(&[]), &BuildCx::unattended(1)).expect("small");
+        let remark = built.remarks().into_iter().find(|r| r.starts_with("Leaves:")).expect("a remark");
+        assert!(remark.contains(&format!("took {expected},")), "{model}: {remark}");
+    }
+}
+
+#[test]
+fn a_mesh_takes_no_more_bytes_than_promised() {
+    let geometry = geometry("builtin:terrain?triangles=20000");
+    let built = build::<Watertight>(&geometry, &params(&[]), &BuildCx::unattended(1)).expect("small");
+    let bytes: u64 = built.memory().iter().map(|part| part.bytes).sum();
+    assert!(bytes <= 70 * geometry.live_count() as u64, "{bytes} bytes");
+}
+
+#[test]
+fn triangles_at_one_place_go_into_nodes_below_each_other() {
+    // All of them in one leaf of the binary tree: more blocks than a leaf can refer to.
+    let geometry = geometry("builtin:soup?triangles=400");
+    let p = params(&[("wide_leaf", "32"), ("c_block", "0"), ("leaves", "patches")]);
+    let cx = BuildCx::unattended(1);
+    let drafted = bvh::draft(&geometry, &p, &cx).expect("small");
+    let tree: Tree<Watertight, Patch> = build::build(&geometry, drafted, &p, &cx).expect("small");
+    let mut prims = 0;
+    walk(&tree, &mut |cell| {
+        prims += cell.prims();
+        std::ops::ControlFlow::Continue(crate::accel::cell::Descend::Yes)
+    });
+    assert_eq!(prims, 400);
+    let _: PhantomData<Watertight> = tree.test;
+}

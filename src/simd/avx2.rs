@@ -1,0 +1,155 @@
+//! The road of x86 processors since 2013. Every `unsafe` here calls an AVX2 instruction, or a load or
+//! store of exactly the bytes of a reference: a value of [`Avx2`] exists only where [`Avx2::new`] has
+//! asked the processor.
+#![expect(unsafe_code)]
+
+use std::arch::x86_64::*;
+
+use super::{Kernel, LANES, Lanes, Simd};
+
+/// AVX2, BMI and POPCNT are there.
+#[derive(Clone, Copy, Debug)]
+pub struct Avx2(());
+
+impl Avx2 {
+    /// If this processor has it.
+    #[inline]
+    pub fn new() -> Option<Self> {
+        let has = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("lzcnt");
+        has.then_some(Self(()))
+    }
+}
+
+#[target_feature(enable = "avx,avx2,bmi1,bmi2,popcnt,lzcnt")]
+fn enter<K: Kernel>(s: Avx2, kernel: K) -> K::Out {
+    kernel.run(s)
+}
+
+impl Simd for Avx2 {
+    type F = __m256;
+    type I = __m256i;
+
+    #[inline(always)]
+    fn run<K: Kernel>(self, kernel: K) -> K::Out {
+        // SAFETY: the processor has these instructions, or there were no `self`.
+        unsafe { enter(self, kernel) }
+    }
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> __m256 {
+        // SAFETY: as above.
+        unsafe { _mm256_set1_ps(x) }
+    }
+
+    #[inline(always)]
+    fn load(self, from: &Lanes) -> __m256 {
+        // SAFETY: the reference is to 32 bytes; no alignment is asked for.
+        unsafe { _mm256_loadu_ps(from.as_ptr()) }
+    }
+
+    #[inline(always)]
+    fn store(self, x: __m256, to: &mut Lanes) {
+        // SAFETY: the reference is to 32 bytes; no alignment is asked for.
+        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), x) }
+    }
+
+    #[inline(always)]
+    fn load_bits(self, from: &[u32; LANES]) -> __m256 {
+        // SAFETY: the reference is to 32 bytes; no alignment is asked for.
+        unsafe { _mm256_castsi256_ps(_mm256_loadu_si256(from.as_ptr().cast())) }
+    }
+
+    #[inline(always)]
+    fn store_bits(self, x: __m256, to: &mut [u32; LANES]) {
+        // SAFETY: the reference is to 32 bytes; no alignment is asked for.
+        unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), _mm256_castps_si256(x)) }
+    }
+
+    #[inline(always)]
+    fn load_bytes(self, from: &[u8; LANES]) -> __m256 {
+        // SAFETY: the reference is to the 8 bytes that are loaded.
+        unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()))) }
+    }
+
+    #[inline(always)]
+    fn add(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_add_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn sub(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_sub_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn mul(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_mul_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn div(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_div_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn min(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_min_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn max(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_max_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn le(self, a: __m256, b: __m256) -> u32 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)).cast_unsigned() }
+    }
+
+    #[inline(always)]
+    fn lt(self, a: __m256, b: __m256) -> u32 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)).cast_unsigned() }
+    }
+
+    #[inline(always)]
+    fn eq(self, a: __m256, b: __m256) -> u32 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_EQ_OQ>(a, b)).cast_unsigned() }
+    }
+
+    #[inline(always)]
+    fn indices(self, from: &[u8; LANES]) -> __m256i {
+        // SAFETY: the reference is to the 8 bytes that are loaded.
+        unsafe { _mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast())) }
+    }
+
+    #[inline(always)]
+    fn flip(self, i: __m256i, with: u32) -> __m256i {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_xor_si256(i, _mm256_set1_epi32(with.cast_signed())) }
+    }
+
+    #[inline(always)]
+    fn permute(self, x: __m256, i: __m256i) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_permutevar8x32_ps(x, i) }
+    }
+
+    #[inline(always)]
+    fn prefetch(self, address: usize) {
+        // SAFETY: as in `run`; a prefetch reads nothing, and no address is wrong for it.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::without_provenance(address)) }
+    }
+}

@@ -1,0 +1,136 @@
+//! Eight floats at a time: a small trait with one implementation per road. [`Avx2`] is taken where
+//! the processor has it, [`Portable`] everywhere else; both give the same results to the bit, since no
+//! operation here is fused or approximate.
+//!
+//! A kernel is written once, generic over [`Simd`], and everything beneath it is
+//! `#[inline(always)]`: [`Simd::run`] is the one place where a road's instructions are switched on, so
+//! it is called once a batch and not once an operation.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod compress;
+mod portable;
+
+#[cfg(test)]
+mod tests;
+
+#[cfg(target_arch = "x86_64")]
+pub use avx2::Avx2;
+pub use compress::{LEFT, UNDER_XOR};
+pub use portable::Portable;
+
+/// Lanes of every vector.
+pub const LANES: usize = 8;
+
+/// One float for each lane, as it lies in memory.
+pub type Lanes = [f32; LANES];
+
+/// What is run on a road: a closure whose code the road's instructions are compiled into.
+pub trait Kernel {
+    /// What it returns.
+    type Out;
+
+    /// The work; must be `#[inline(always)]`.
+    fn run<S: Simd>(self, s: S) -> Self::Out;
+}
+
+/// A road: what the processor can do at a time. Values of the type exist only where it can.
+pub trait Simd: Copy + Send + Sync + 'static {
+    /// Eight floats.
+    type F: Copy;
+    /// Eight numbers of lanes, 0 to 7.
+    type I: Copy;
+
+    /// Compiles a kernel for this road and runs it.
+    fn run<K: Kernel>(self, kernel: K) -> K::Out;
+
+    /// The same float in all lanes.
+    fn splat(self, x: f32) -> Self::F;
+    /// From memory.
+    fn load(self, from: &Lanes) -> Self::F;
+    /// To memory.
+    fn store(self, x: Self::F, to: &mut Lanes);
+    /// Eight integers from memory, as floats of the same bits: to be permuted and stored, not counted with.
+    fn load_bits(self, from: &[u32; LANES]) -> Self::F;
+    /// The same back.
+    fn store_bits(self, x: Self::F, to: &mut [u32; LANES]);
+    /// Eight bytes as floats: 0 to 255, exact.
+    fn load_bytes(self, from: &[u8; LANES]) -> Self::F;
+    /// The sum.
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The difference.
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The product.
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The quotient.
+    fn div(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `a < b ? a : b`.
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `a > b ? a : b`.
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// One bit for each lane where `a <= b`.
+    fn le(self, a: Self::F, b: Self::F) -> u32;
+    /// One bit for each lane where `a < b`.
+    fn lt(self, a: Self::F, b: Self::F) -> u32;
+    /// One bit for each lane where `a == b`.
+    fn eq(self, a: Self::F, b: Self::F) -> u32;
+
+    /// Numbers of lanes from memory; only the three lowest bits count.
+    fn indices(self, from: &[u8; LANES]) -> Self::I;
+    /// Each number with the bits of `with`, 0 to 7, flipped.
+    fn flip(self, i: Self::I, with: u32) -> Self::I;
+    /// Lane `i[k]` of `x` in lane `k`.
+    fn permute(self, x: Self::F, i: Self::I) -> Self::F;
+
+    /// Asks for a cache line that is needed soon, at any address: nothing is read.
+    fn prefetch(self, address: usize);
+}
+
+/// The roads, to choose one once a batch.
+#[derive(Clone, Copy, Debug)]
+pub enum Road {
+    /// AVX2.
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    /// Plain code, which compilers turn into whatever vectors every processor of a kind has.
+    Portable(Portable),
+}
+
+impl Road {
+    /// The fastest that this processor has.
+    #[inline]
+    pub fn best() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx2) = Avx2::new() {
+            return Self::Avx2(avx2);
+        }
+        Self::Portable(Portable)
+    }
+
+    /// All that this processor has.
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![Self::Portable(Portable)];
+        #[cfg(target_arch = "x86_64")]
+        all.extend(Avx2::new().map(Self::Avx2));
+        all
+    }
+
+    /// What it is called in reports.
+    pub const fn id(self) -> &'static str {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => "avx2",
+            Self::Portable(_) => "portable",
+        }
+    }
+
+    /// Runs a kernel on it.
+    #[inline]
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Out {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(s) => s.run(kernel),
+            Self::Portable(s) => s.run(kernel),
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The road that every processor has: arrays and loops, and the oracle for the others.
+
+use super::{Kernel, LANES, Lanes, Simd};
+
+/// Plain code.
+#[derive(Clone, Copy, Debug)]
+pub struct Portable;
+
+#[inline(always)]
+fn each(f: impl Fn(usize) -> f32) -> Lanes {
+    let mut lanes = [0.0; LANES];
+    for (i, lane) in lanes.iter_mut().enumerate() {
+        *lane = f(i);
+    }
+    lanes
+}
+
+#[inline(always)]
+fn mask(f: impl Fn(usize) -> bool) -> u32 {
+    let mut bits = [0u32; LANES];
+    for (i, bit) in bits.iter_mut().enumerate() {
+        *bit = u32::from(f(i)) << i;
+    }
+    bits.iter().fold(0, |a, b| a | b)
+}
+
+impl Simd for Portable {
+    type F = Lanes;
+    type I = [u8; LANES];
+
+    #[inline(always)]
+    fn run<K: Kernel>(self, kernel: K) -> K::Out {
+        kernel.run(self)
+    }
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> Lanes {
+        [x; LANES]
+    }
+
+    #[inline(always)]
+    fn load(self, from: &Lanes) -> Lanes {
+        *from
+    }
+
+    #[inline(always)]
+    fn store(self, x: Lanes, to: &mut Lanes) {
+        *to = x;
+    }
+
+    #[inline(always)]
+    fn load_bits(self, from: &[u32; LANES]) -> Lanes {
+        bytemuck::cast(*from)
+    }
+
+    #[inline(always)]
+    fn store_bits(self, x: Lanes, to: &mut [u32; LANES]) {
+        *to = bytemuck::cast(x);
+    }
+
+    #[inline(always)]
+    fn load_bytes(self, from: &[u8; LANES]) -> Lanes {
+        from.map(f32::from)
+    }
+
+    #[inline(always)]
+    fn add(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| a[i] + b[i])
+    }
+
+    #[inline(always)]
+    fn sub(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| a[i] - b[i])
+    }
+
+    #[inline(always)]
+    fn mul(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| a[i] * b[i])
+    }
+
+    #[inline(always)]
+    fn div(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| a[i] / b[i])
+    }
+
+    #[inline(always)]
+    fn min(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| if a[i] < b[i] { a[i] } else { b[i] })
+    }
+
+    #[inline(always)]
+    fn max(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+
+    #[inline(always)]
+    fn le(self, a: Lanes, b: Lanes) -> u32 {
+        mask(|i| a[i] <= b[i])
+    }
+
+    #[inline(always)]
+    fn lt(self, a: Lanes, b: Lanes) -> u32 {
+        mask(|i| a[i] < b[i])
+    }
+
+    #[inline(always)]
+    fn eq(self, a: Lanes, b: Lanes) -> u32 {
+        mask(|i| a[i] == b[i])
+    }
+
+    #[inline(always)]
+    fn indices(self, from: &[u8; LANES]) -> [u8; LANES] {
+        *from
+    }
+
+    #[inline(always)]
+    fn flip(self, i: [u8; LANES], with: u32) -> [u8; LANES] {
+        i.map(|i| i ^ with as u8)
+    }
+
+    #[inline(always)]
+    fn permute(self, x: Lanes, i: [u8; LANES]) -> Lanes {
+        each(|k| x[usize::from(i[k] & 7)])
+    }
+
+    #[inline(always)]
+    fn prefetch(self, _: usize) {}
+}

@@ -1,0 +1,68 @@
+//! Every road against the plain one, operation by operation.
+
+use super::*;
+
+/// All operations of a road on some numbers, as bits.
+struct Everything([Lanes; 2]);
+
+impl Kernel for Everything {
+    type Out = Vec<u32>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> Vec<u32> {
+        let [a, b] = self.0.map(|x| s.load(&x));
+        let mut out = Vec::new();
+        let bytes = self.0[0].map(|x| x.to_bits() as u8);
+        let i = s.indices(&bytes);
+        let results = [
+            s.add(a, b),
+            s.sub(a, b),
+            s.mul(a, b),
+            s.div(a, b),
+            s.min(a, b),
+            s.max(a, b),
+            s.splat(self.0[0][3]),
+            s.load_bytes(&bytes),
+            s.permute(a, i),
+            s.permute(b, s.flip(i, 5)),
+            s.load_bits(&self.0[1].map(f32::to_bits)),
+        ];
+        for result in results {
+            let (mut floats, mut bits) = ([0.0; LANES], [0; LANES]);
+            s.store(result, &mut floats);
+            s.store_bits(result, &mut bits);
+            // Which of two NaNs a sum carries on is left open.
+            out.extend(floats.map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
+            out.extend(bits.map(|x| if f32::from_bits(x).is_nan() { 1 } else { x }));
+        }
+        out.extend([s.le(a, b), s.lt(a, b), s.eq(a, b)]);
+        out
+    }
+}
+
+#[test]
+fn every_road_computes_the_same() {
+    let some = [0.0, -0.0, 1.0, -1.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, 1e-45, f32::MAX, 0.1, 3.0, f32::MIN_POSITIVE];
+    for shift in 0..some.len() {
+        for step in 1..some.len() {
+            let a = std::array::from_fn(|i| some[(i + shift) % some.len()]);
+            let b = std::array::from_fn(|i| some[(i * step + 3) % some.len()]);
+            let plain = Portable.run(Everything([a, b]));
+            for road in Road::all() {
+                assert_eq!(road.run(Everything([a, b])), plain, "{} of {a:?} and {b:?}", road.id());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_tables_say_what_they_claim() {
+    for mask in 0..256usize {
+        let set: Vec<u8> = (0..8).filter(|bit| mask >> bit & 1 == 1).collect();
+        assert_eq!(LEFT[mask][..set.len()], set[..]);
+        for x in 0..8 {
+            let flipped = set.iter().fold(0u8, |m, bit| m | 1 << (bit ^ x));
+            assert_eq!(UNDER_XOR[usize::from(x)][mask], flipped);
+        }
+    }
+}
