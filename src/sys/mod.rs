@@ -1,5 +1,10 @@
 //! What the machine is: its memory, its processor, its files. System calls live here and nowhere else.
 
+#[cfg(feature = "peers")]
+pub mod embree;
+#[cfg(all(feature = "peers", target_arch = "x86_64", not(target_env = "msvc")))]
+pub mod tinybvh;
+
 use std::path::Path;
 
 /// Bytes of memory that this process may count on: the machine's, or the container's where that
