@@ -11,6 +11,8 @@ pub mod format;
 pub mod least_squares;
 mod lines;
 mod measure;
+#[cfg(feature = "peers")]
+pub mod peers;
 mod quality;
 mod raster;
 mod rays;
