@@ -84,11 +84,12 @@ impl Traced {
     /// Eight neighbours of the list at a time; the last packet may have fewer.
     fn packets(&self, rays: &[Ray], ask: Ask, found: &mut Vec<Found>) -> u64 {
         found.clear();
+        let mut packet = Packet::default();
         for eight in rays.chunks(8) {
-            let mut packet = Packet::default();
             for (lane, ray) in eight.iter().enumerate() {
                 packet.set(lane, ray.origin.to_array(), ray.dir.to_array(), ray.tmin, ray.tmax);
             }
+            (eight.len()..8).for_each(|lane| packet.leave_out(lane));
             if ask.mode == Mode::Any {
                 self.0.any8(&mut packet, ask.coherent);
                 found.extend((0..eight.len()).map(|lane| Found::any(packet.occluded(lane))));

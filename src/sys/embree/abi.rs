@@ -137,6 +137,13 @@ impl Packet {
         self.geometry[lane] = NO_HIT;
     }
 
+    /// Leaves a lane (below 8) out of the next query.
+    #[inline(always)]
+    pub fn leave_out(&mut self, lane: usize) {
+        self.tfar[lane] = f32::NEG_INFINITY;
+        self.geometry[lane] = NO_HIT;
+    }
+
     /// The t and the triangle of a lane's hit.
     #[inline(always)]
     pub fn hit(&self, lane: usize) -> Option<(f32, u32)> {
