@@ -116,6 +116,9 @@ pub struct RaySet {
     pub rays: Vec<Ray>,
 }
 
+/// A ray with the column and row that it comes from.
+type FromPixel = ((u32, u32), Ray);
+
 /// Rows of a picture made at a time.
 const ROWS: u32 = 4;
 
@@ -170,7 +173,7 @@ impl RaySet {
             Ok(rays.iter().zip(&hits).enumerate().filter_map(leave).collect())
         };
         let bands: Vec<u32> = (0..height).step_by(ROWS as usize).collect();
-        let bands: Result<Vec<Vec<((u32, u32), Ray)>>, Cancelled> = pool.run(|| bands.into_par_iter().map(band).collect());
+        let bands: Result<Vec<Vec<FromPixel>>, Cancelled> = pool.run(|| bands.into_par_iter().map(band).collect());
         let mut rays = bands?.concat();
         if order == PixelOrder::Morton {
             pool.run(|| rays.par_sort_unstable_by_key(|((x, y), _)| morton(*x) | morton(*y) << 1));

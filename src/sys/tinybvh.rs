@@ -85,7 +85,7 @@ impl Wide {
         let mut bvh = None;
         // SAFETY: a `unique_ptr` is a pointer, written to `bvh`; the structure is empty then.
         unsafe { new(&raw mut bvh) };
-        let wide = Self { bvh: bvh?, corners: corners };
+        let wide = Self { bvh: bvh?, corners };
         let slice = Corners { data: wide.corners.as_ptr(), count, stride: 16 };
         // SAFETY: the structure is new, and the corners live as long as it does.
         unsafe { (if spatial_splits { build_hq } else { build })(wide.bvh.as_ptr(), &raw const slice) };

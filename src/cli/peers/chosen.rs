@@ -11,7 +11,7 @@ use crate::cli::structures::{BuildArgs, One, Setting};
 use crate::geometry::num::floor_index;
 use crate::geometry::tri::TestKind;
 use crate::lab::RayKind;
-use crate::lab::peers::{Ours, Recipe, peers};
+use crate::lab::peers::{Ours, Recipe, Recipes, peers};
 
 /// A structure with settings of its own: `bvh:builder=sweep`.
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ pub fn specs(asked: &[Spec], set: &[Setting]) -> Result<Vec<(String, &'static En
 }
 
 /// Those with each triangle test.
-pub fn ours(specs: &[(String, &'static Entry, ParamValues)], tests: &[TestKind], cx: &Context) -> Vec<Box<dyn Recipe>> {
+pub fn ours(specs: &[(String, &'static Entry, ParamValues)], tests: &[TestKind], cx: &Context) -> Recipes {
     let recipe = |(id, entry, params): &(String, &'static Entry, ParamValues), test| {
         let (id, params, budget, cancel) = (id.clone(), params.clone(), cx.budget.clone(), cx.cancel.clone());
         Box::new(Ours { id, entry, params, test, budget, cancel }) as Box<dyn Recipe>
@@ -91,9 +91,9 @@ impl FromStr for Peers {
 
 impl Peers {
     /// The chosen ones, and a word on each that is not here.
-    pub fn chosen(&self) -> Result<(Vec<Box<dyn Recipe>>, Vec<String>), Failure> {
+    pub fn chosen(&self) -> Result<(Recipes, Vec<String>), Failure> {
         let (mut recipes, mut missing) = match self {
-            Self::Some(ids) if ids.is_empty() => (Vec::new(), Vec::new()),
+            Self::Some(ids) if ids.is_empty() => (Recipes::new(), Vec::new()),
             _ => peers(),
         };
         if let Self::Some(ids) = self {

@@ -138,9 +138,9 @@ pub trait Entrant: Send + Sync {
 /// Writes what `one` finds for each ray, and counts the hits: how a peer that takes one ray at a time is
 /// called.
 #[inline(always)]
-fn one_by_one(rays: Rays<'_>, hits: &mut Hits, mut one: impl FnMut(&Ray) -> Found) -> u64 {
+fn one_by_one(rays: Rays<'_>, hits: &mut Hits, one: impl FnMut(&Ray) -> Found) -> u64 {
     hits.found.clear();
-    hits.found.extend(rays.scaled.iter().map(|ray| one(ray)));
+    hits.found.extend(rays.scaled.iter().map(one));
     hits.found.iter().filter(|found| found.is_hit()).count() as u64
 }
 
@@ -200,9 +200,12 @@ pub trait Recipe: Send + Sync {
     fn build(&self, geometry: &Arc<Geometry>, pool: &Pool) -> Result<Built, NotBuilt>;
 }
 
+/// Some that take part.
+pub type Recipes = Vec<Box<dyn Recipe>>;
+
 /// Every peer there is here, and a word on each that is not.
-pub fn peers() -> (Vec<Box<dyn Recipe>>, Vec<String>) {
-    let (mut recipes, mut missing): (Vec<Box<dyn Recipe>>, Vec<String>) = (Vec::new(), Vec::new());
+pub fn peers() -> (Recipes, Vec<String>) {
+    let (mut recipes, mut missing) = (Recipes::new(), Vec::new());
     match embree::recipes() {
         Ok(embree) => recipes.extend(embree),
         Err(error) => missing.push(format!("embree: {error}")),
