@@ -1,17 +1,21 @@
 //! Intel's Embree, loaded when the program runs: what other structures are measured against. The C
-//! interface of its versions 3 and 4, declared by hand ([`abi`]), behind types that keep its rules.
+//! interface of its versions 3 and 4, declared by hand, behind types that keep its rules.
 
 #![expect(unsafe_code, reason = "Embree is a C library")]
 
 mod abi;
+mod functions;
+mod mesh;
 
 use std::ffi::{CString, c_void};
 use std::ptr::NonNull;
-use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, OnceLock};
 
-use abi::{Context, Functions, Generation, Queries, Query8};
+use abi::{Context, Generation};
 pub use abi::{NO_HIT, Packet, RayHit};
+use functions::{Functions, Queries, Query8};
+use mesh::Mesh;
 
 /// Where a library may be named that is not among the usual ones.
 pub const PATH_VARIABLE: &str = "BOXWOOD_EMBREE";
@@ -119,26 +123,6 @@ impl Functions {
     }
 }
 
-/// Bytes that the device of a scene holds.
-type Bytes = AtomicI64;
-
-/// A device of its own and the triangles on it, committed or not.
-#[derive(Debug)]
-struct Mesh {
-    library: Arc<Library>,
-    device: NonNull<c_void>,
-    scene: NonNull<c_void>,
-    geometry: NonNull<c_void>,
-    /// What the monitor counts in; the box keeps its place.
-    bytes: Box<Bytes>,
-}
-
-// SAFETY: the handles are counted references that Embree lets any thread use; a committed scene may be
-// traced by many at once, and nothing else is done through a shared reference.
-unsafe impl Send for Mesh {}
-// SAFETY: as above.
-unsafe impl Sync for Mesh {}
-
 /// Triangles that Embree holds, ready to be built over.
 #[derive(Debug)]
 pub struct Prepared(Mesh);
@@ -150,13 +134,6 @@ pub struct Scene {
     bytes: u64,
     coherent: Context,
     incoherent: Context,
-}
-
-/// Counts what Embree takes and gives back.
-unsafe extern "C" fn monitor(bytes: *mut c_void, change: isize, _after: bool) -> bool {
-    // SAFETY: the pointer is that of the mesh's own counter, which is freed after the device.
-    unsafe { &*bytes.cast::<Bytes>() }.fetch_add(change as i64, Ordering::Relaxed);
-    true
 }
 
 impl Prepared {
@@ -200,73 +177,6 @@ impl Prepared {
         let bytes = u64::try_from(mesh.bytes.load(Ordering::Relaxed) - before).unwrap_or(0);
         let context = |coherent| Context::new(f.generation, coherent);
         Ok(Scene { bytes, coherent: context(true), incoherent: context(false), mesh })
-    }
-}
-
-impl Mesh {
-    fn new(library: &Arc<Library>, settings: Settings) -> Result<Self, Error> {
-        let f = &library.functions;
-        let device = f.device(settings.threads)?;
-        let bytes = Box::new(Bytes::new(0));
-        // SAFETY: the device is alive; the counter lives until after the device is released. Each of the
-        // two others may be null, and is looked at below.
-        let (scene, geometry) = unsafe {
-            (f.monitor_memory)(device.as_ptr(), Some(monitor), std::ptr::from_ref(&*bytes).cast_mut().cast());
-            ((f.new_scene)(device.as_ptr()), (f.new_geometry)(device.as_ptr(), abi::GEOMETRY_TRIANGLE))
-        };
-        let (Some(scene), Some(geometry)) = (NonNull::new(scene), NonNull::new(geometry)) else {
-            // SAFETY: the device is alive; there is nothing on it that could be used.
-            return Err(unsafe {
-                let error = (f.device_error)(device.as_ptr());
-                (f.release_device)(device.as_ptr());
-                Error::Reported(error)
-            });
-        };
-        let mesh = Self { library: Arc::clone(library), device, scene, geometry, bytes };
-        let quality = if settings.high_quality { abi::QUALITY_HIGH } else { abi::QUALITY_MEDIUM };
-        // SAFETY: the handles are alive, and the values are those of the enumerations.
-        unsafe {
-            (f.geometry_quality)(geometry.as_ptr(), quality);
-            (f.scene_quality)(scene.as_ptr(), quality);
-            (f.scene_flags)(scene.as_ptr(), if settings.robust { abi::SCENE_ROBUST } else { 0 });
-        }
-        mesh.check()?;
-        Ok(mesh)
-    }
-
-    /// Copies a list to a new buffer of the geometry.
-    fn fill<T: Copy>(&self, kind: u32, format: u32, items: &[[T; 3]]) -> Result<(), Error> {
-        let new = self.library.functions.new_buffer;
-        // SAFETY: the geometry is alive; stride and count are those of the list.
-        let buffer = unsafe { new(self.geometry.as_ptr(), kind, 0, format, size_of::<[T; 3]>(), items.len()) };
-        if buffer.is_null() {
-            return self.check().and(Err(Error::Indices));
-        }
-        // SAFETY: Embree gave a buffer of so many items of that size, aligned to 16 bytes, which is new and
-        // so does not overlap the list.
-        unsafe { buffer.cast::<[T; 3]>().copy_from_nonoverlapping(items.as_ptr(), items.len()) };
-        self.check()
-    }
-
-    /// What went wrong since the last look.
-    fn check(&self) -> Result<(), Error> {
-        // SAFETY: the device is alive.
-        match unsafe { (self.library.functions.device_error)(self.device.as_ptr()) } {
-            0 => Ok(()),
-            code => Err(Error::Reported(code)),
-        }
-    }
-}
-
-impl Drop for Mesh {
-    fn drop(&mut self) {
-        let f = &self.library.functions;
-        // SAFETY: each handle is released once, what was made last first; the counter goes after them.
-        unsafe {
-            (f.release_geometry)(self.geometry.as_ptr());
-            (f.release_scene)(self.scene.as_ptr());
-            (f.release_device)(self.device.as_ptr());
-        }
     }
 }
 
@@ -348,44 +258,4 @@ impl Scene {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_index_past_the_last_vertex_is_refused() {
-        let settings = Settings { high_quality: false, robust: true, threads: 1 };
-        let Ok(library) = Library::find() else { return };
-        let refused = Prepared::new(&library, settings, &[[0.0; 3]; 3], &[[0, 1, 3]]);
-        assert!(matches!(refused, Err(Error::Indices)));
-    }
-
-    #[test]
-    fn one_triangle_is_hit_by_one_ray_and_by_the_same_of_eight() {
-        let Ok(library) = Library::find() else { return };
-        let settings = Settings { high_quality: false, robust: true, threads: 1 };
-        let corners = [[-1.0, -1.0, 2.0], [1.0, -1.0, 2.0], [0.0, 1.0, 2.0]];
-        let scene = Prepared::new(&library, settings, &corners, &[[0, 1, 2]]).and_then(Prepared::commit).expect("builds");
-        assert!(scene.bytes() > 0 && library.version().expect("a version").starts_with(['3', '4']));
-        let ray = |x: f32| ([x, 0.0, 0.0], [0.0, 0.0, 1.0], 0.0, f32::INFINITY);
-        for x in [0.0, 3.0] {
-            let (origin, dir, tmin, tmax) = ray(x);
-            let new = || RayHit::new(origin, dir, tmin, tmax);
-            let (mut closest, mut any) = (new(), new());
-            scene.closest(&mut closest, true);
-            assert_eq!((closest.prim, closest.tfar), if x == 0.0 { (0, 2.0) } else { (NO_HIT, f32::INFINITY) });
-            assert_eq!(scene.any(&mut any, false), x == 0.0);
-        }
-        let (mut closest, mut any) = (Packet::default(), Packet::default());
-        for (lane, x) in [0.0, 3.0, 0.1].into_iter().enumerate() {
-            let (origin, dir, tmin, tmax) = ray(x);
-            closest.set(lane, origin, dir, tmin, tmax);
-            any.set(lane, origin, dir, tmin, tmax);
-        }
-        scene.closest8(&mut closest, true);
-        scene.any8(&mut any, false);
-        let hits: Vec<bool> = (0..8).map(|lane| closest.hit(lane).is_some()).collect();
-        assert_eq!(hits, [true, false, true, false, false, false, false, false]);
-        assert_eq!(closest.hit(2), Some((2.0, 0)));
-        assert_eq!((0..3).map(|lane| any.occluded(lane)).collect::<Vec<_>>(), [true, false, true]);
-    }
-}
+mod tests;

@@ -7,6 +7,7 @@
 
 mod bvh_crate;
 mod embree;
+mod lane;
 mod obvhs;
 mod ours;
 mod parry;
