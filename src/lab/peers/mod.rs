@@ -5,7 +5,7 @@
 //! has the easier numbers; ours is given world rays and brings them there itself, as its users have it.
 //! Inputs are brought into a peer's own form before its build is timed, its rays while they are traced.
 
-mod bvh_crate;
+mod bvh_rs;
 mod embree;
 mod lane;
 mod obvhs;
@@ -220,7 +220,7 @@ pub fn peers() -> (Recipes, Vec<String>) {
     missing.push("tinybvh: its layout for processors needs AVX2".to_owned());
     recipes.extend(obvhs::recipes());
     recipes.extend(parry::recipes());
-    recipes.extend(bvh_crate::recipes());
+    recipes.extend(bvh_rs::recipes());
     (recipes, missing)
 }
 

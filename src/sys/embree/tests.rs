@@ -23,7 +23,9 @@ fn one_triangle_is_hit_by_one_ray_and_by_the_same_of_eight() {
         let new = || RayHit::new(origin, dir, tmin, tmax);
         let (mut closest, mut any) = (new(), new());
         scene.closest(&mut closest, true);
-        assert_eq!((closest.prim, closest.tfar), if x == 0.0 { (0, 2.0) } else { (NO_HIT, f32::INFINITY) });
+        assert_eq!(closest.prim, if x == 0.0 { 0 } else { NO_HIT });
+        // Embree divides by an approximate reciprocal.
+        assert!(if x == 0.0 { (closest.tfar - 2.0).abs() < 1e-5 } else { closest.tfar == f32::INFINITY });
         assert_eq!(scene.any(&mut any, false), x == 0.0);
     }
     let (mut closest, mut any) = (Packet::default(), Packet::default());
@@ -36,6 +38,6 @@ fn one_triangle_is_hit_by_one_ray_and_by_the_same_of_eight() {
     scene.any8(&mut any, false);
     let hits: Vec<bool> = (0..8).map(|lane| closest.hit(lane).is_some()).collect();
     assert_eq!(hits, [true, false, true, false, false, false, false, false]);
-    assert_eq!(closest.hit(2), Some((2.0, 0)));
+    assert!(closest.hit(2).is_some_and(|(t, prim)| (t - 2.0).abs() < 1e-5 && prim == 0));
     assert_eq!((0..3).map(|lane| any.occluded(lane)).collect::<Vec<_>>(), [true, false, true]);
 }
