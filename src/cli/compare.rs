@@ -15,7 +15,7 @@ use super::{bar, outcome, quality, rays, stats};
 use crate::accel::Accel;
 use crate::lab::format::count;
 use crate::lab::{
-    Contestant, Fairness, MeasureOptions, Quality, RasterRow, RayKind, RaySet, Report, StructureRow, Timing, measure,
+    Contestant, Fairness, MeasureOptions, PixelOrder, Quality, RasterRow, RayKind, RaySet, Report, StructureRow, Timing, measure,
     measure_with_raster,
 };
 use crate::render::raster::Raster;
@@ -30,12 +30,16 @@ pub struct Args {
     /// The structures: ids between commas, raster (with primary rays) among them, or all.
     #[arg(long, value_name = "all|ID,ID", default_value = "all")]
     structures: Racers,
-    /// The kinds of rays, between commas: primary, shadow, diffuse, lines (random ones).
+    /// The kinds of rays, between commas: primary, shadow, diffuse, lines (random ones), shuffled
+    /// (diffuse ones in a random order).
     #[arg(long, value_name = "KINDS", value_delimiter = ',', default_value = "primary,shadow,diffuse")]
     rays: Vec<RayKind>,
     /// The picture whose rays are traced.
     #[arg(long, value_name = "WxH", default_value = "640x400")]
     size: Size,
+    /// The order of the pixels that the rays come from: rows or morton, which raster can't draw.
+    #[arg(long, default_value = "rows")]
+    order: PixelOrder,
     /// The fewest timed rounds of each structure.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
@@ -73,13 +77,16 @@ struct Comparison<'a> {
     raster: Option<&'a RasterRow>,
     fairness: Fairness,
     size: [u32; 2],
+    order: PixelOrder,
 }
 
 pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let Racers { entries, raster } = &args.structures;
-    let raster = *raster && args.kinds().contains(&RayKind::Primary);
+    let raster = *raster && args.order == PixelOrder::Rows && args.kinds().contains(&RayKind::Primary);
     if entries.is_empty() && !raster {
-        return Err(Failure::Input("raster draws what primary rays see: add --rays primary, or a structure".to_owned()));
+        return Err(Failure::Input(
+            "raster draws what primary rays see, row by row: add --rays primary --order rows, or a structure".to_owned(),
+        ));
     }
     let params = args.build.params(entries)?;
     let cx = Context::new(args.model.machine, cancel);
@@ -101,7 +108,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     }
     let fairness = args.options().fairness;
     let size = [args.size.width, args.size.height];
-    let object = Comparison { report: &report, raster: drawn.as_ref(), fairness, size };
+    let object = Comparison { report: &report, raster: drawn.as_ref(), fairness, size, order: args.order };
     let say = || if args.json { print_json(&object) } else { print(&text(args, &report, drawn.as_ref())) };
     if entries.is_empty() { say() } else { stats::print_report(&report, say) }
 }
@@ -135,7 +142,10 @@ impl Race<'_> {
         let finder = self.finder()?;
         let (mut sets, mut drawn) = (Vec::new(), None);
         for kind in &self.args.kinds() {
-            let (set, memory) = rays::generate(*kind, self.model, self.camera, Arc::clone(&finder), self.args.size, self.cx)?;
+            let (set, memory) = {
+                let shape = (self.args.size, self.args.order);
+                rays::ordered(*kind, self.model, self.camera, Arc::clone(&finder), shape, self.cx)?
+            };
             let timings = if self.raster && *kind == RayKind::Primary {
                 let (timings, row) = self.with_raster(&set, &finder)?;
                 drawn = Some(row);

@@ -12,6 +12,11 @@ mod hits;
 mod npy;
 mod outcome;
 mod output;
+#[cfg(feature = "peers")]
+mod peers;
+#[cfg(not(feature = "peers"))]
+#[path = "no_peers.rs"]
+mod peers;
 mod plot;
 mod quality;
 mod rays;
@@ -55,6 +60,8 @@ enum Command {
     Compare(compare::Args),
     /// Time builds and rays over a model in growing numbers of triangles.
     Scaling(scaling::Args),
+    /// Time structures beside those of other libraries: Embree, tinybvh, obvhs, parry3d, bvh.
+    Peers(peers::Args),
     /// Compare bounding volumes around the nodes of one tree: tightness against cost.
     Volumes(volumes::Args),
     /// Render a picture to a PNG file.
@@ -86,6 +93,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Stats(args) => stats::run(&args, cancel),
         Command::Compare(args) => compare::run(&args, cancel),
         Command::Scaling(args) => scaling::run(&args, cancel),
+        Command::Peers(args) => peers::run(&args, cancel),
         Command::Volumes(args) => volumes::run(&args, cancel),
         Command::Render(args) => render::run(&args, cancel),
         Command::Rays(args) => rays::run(&args, cancel),

@@ -54,7 +54,8 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         let camera = CameraSpec::or_first(None, &model.scene, &model.geometry, quality::SIZE.aspect());
         let finder = rays::finder(&model, &cx)?;
         let mut sets = Vec::new();
-        for kind in RayKind::ALL {
+        // Shuffled rays are the diffuse ones again.
+        for kind in RayKind::ALL.into_iter().filter(|kind| *kind != RayKind::Shuffled) {
             sets.push(rays::generate(kind, &model, camera, Arc::clone(&finder), quality::SIZE, &cx)?);
         }
         quality::fit(&contestants, &sets, &mut structures, &cx)?;

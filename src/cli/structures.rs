@@ -91,6 +91,14 @@ impl FromStr for Setting {
     }
 }
 
+impl Setting {
+    /// Sets the parameter of a structure.
+    #[cfg(feature = "peers")]
+    pub fn apply(&self, entry: &Entry, params: &mut ParamValues) -> Result<(), Failure> {
+        params.set(&self.id, &self.value).map_err(|error| Failure::Input(format!("{}: {error}", entry.id)))
+    }
+}
+
 impl BuildArgs {
     /// The parameters of each structure. A setting goes to every structure that has the parameter;
     /// one that fits none is an error.

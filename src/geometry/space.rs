@@ -48,6 +48,11 @@ impl Entered {
     pub fn world_t(&self, t: f32) -> f32 {
         narrow((f64::from(t) + self.t_offset) * self.t_scale)
     }
+
+    /// The t of [`Self::ray`] of a world's t.
+    pub fn scaled_t(&self, t: f32) -> f32 {
+        narrow(f64::from(t) / self.t_scale - self.t_offset)
+    }
 }
 
 impl Space {

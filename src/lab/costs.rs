@@ -136,7 +136,7 @@ impl<'a> Lane<'a> {
         let mut blocks = Vec::new();
         for set in sets {
             let rays = match set.kind {
-                RayKind::Lines => by_mixture(contestant, set, rays_per_block, cancel)?,
+                RayKind::Lines | RayKind::Shuffled => by_mixture(contestant, set, rays_per_block, cancel)?,
                 _ => neighbours(set, rays_per_block),
             };
             let of = |rays: &[Ray]| Block { mode: set.mode, rays: rays.to_vec(), secs: f64::INFINITY };

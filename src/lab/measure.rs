@@ -196,6 +196,12 @@ fn part(set: &RaySet, most: usize) -> Cow<'_, [Ray]> {
     if most < set.rays.len() { Cow::Owned(pick(&set.rays, most)) } else { Cow::Borrowed(&set.rays) }
 }
 
+/// Rays that a thread takes at a time: few enough that no thread waits long for the last one, enough to
+/// cost nothing.
+pub(super) fn chunk_len(rays: usize, threads: usize) -> usize {
+    (rays / (threads * 32)).clamp(1, 4096)
+}
+
 /// Traces the rays in chunks on the pool; returns how many hit something. Hits go to a buffer of
 /// each thread's, small enough for its cache, so that writing them costs every structure the same
 /// little.
@@ -206,8 +212,7 @@ pub(super) fn trace_all(
     pool: &Pool,
     cancel: &Cancel,
 ) -> Result<u64, Cancelled> {
-    // Small enough that no thread waits long for the last one, large enough to cost nothing.
-    let chunk = (rays.len() / (pool.threads() * 32)).clamp(1, 4096);
+    let chunk = chunk_len(rays.len(), pool.threads());
     let trace = |hits: &mut Vec<Option<crate::accel::Hit>>, rays: &[Ray]| {
         hits.resize(rays.len(), None);
         contestant.accel.trace(rays, mode, hits, cancel)?;

@@ -11,6 +11,8 @@ pub mod format;
 pub mod least_squares;
 mod lines;
 mod measure;
+#[cfg(feature = "peers")]
+pub mod peers;
 mod quality;
 mod raster;
 mod rays;
@@ -32,7 +34,7 @@ pub use lines::line;
 pub use measure::{Contestant, Fairness, MeasureOptions, measure};
 pub use quality::{Quality, QualityOptions};
 pub use raster::{RasterRow, measure_with_raster};
-pub use rays::{RayKind, RaySet};
+pub use rays::{PixelOrder, RayKind, RaySet};
 pub use report::{BuiltFacts, CostRow, Report, StructureRow};
 pub use sah_curve::{Chosen, SahCurves, of_node as sah_curves};
 pub use timing::{Timing, is_tie};

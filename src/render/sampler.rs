@@ -17,9 +17,15 @@ impl Sampler {
 
     /// Two numbers in `[0, 1)` for a use of its own, the dimension.
     pub fn pair(&self, dimension: u32) -> Vec2 {
+        let bits = self.bits(dimension);
+        Vec2::new(unit((bits >> 32) as u32), unit((bits & 0xFFFF_FFFF) as u32))
+    }
+
+    /// The same as 64 random bits.
+    pub fn bits(&self, dimension: u32) -> u64 {
         let a = hash(self.seed ^ hash(2 * dimension));
         let b = hash(self.seed ^ hash(2 * dimension + 1));
-        Vec2::new(unit(a), unit(b))
+        u64::from(a) << 32 | u64::from(b)
     }
 }
 

@@ -1,6 +1,10 @@
 //! What the machine is: its memory, its processor, its files. System calls live here and nowhere else.
 
+#[cfg(feature = "peers")]
+pub mod embree;
 mod pages;
+#[cfg(all(feature = "peers", target_arch = "x86_64", not(target_env = "msvc")))]
+pub mod tinybvh;
 
 pub use pages::list_in_large_pages;
 
