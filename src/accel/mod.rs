@@ -67,15 +67,19 @@ pub trait Structure: Cells + Sized + 'static {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        let mut traced = Traced::default();
-        for (rays, hits) in rays.chunks(RAYS_PER_CHECK).zip(hits.chunks_mut(RAYS_PER_CHECK)) {
-            cancel.check()?;
-            for (ray, hit) in rays.iter().zip(hits) {
-                let local = |ray: &Ray| Ok(self.trace_one(ray, query, &mut Off));
-                *hit = in_scaled_space(self.geometry(), ray, &mut traced, local)?;
-            }
-        }
-        Ok(traced)
+        one_by_one(self.geometry(), rays, hits, cancel, |ray| self.trace_one(ray, query, &mut Off))
+    }
+
+    /// The same one ray at a time, without instructions that not every processor has: the terms on which
+    /// structures are compared like for like. The default is for structures that know no other way.
+    fn trace_plain<Q: Query>(
+        &self,
+        rays: &[Ray],
+        query: &Q,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        self.trace_batch(rays, query, hits, cancel)
     }
 }
 
@@ -100,6 +104,18 @@ pub trait Accel: Cells {
     /// # Errors
     /// [`Cancelled`], within 100 ms of the request; some hits are then not written.
     fn trace(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<Traced, Cancelled>;
+
+    /// The same hits, found one ray at a time and without instructions that not every processor has.
+    ///
+    /// # Errors
+    /// As [`Self::trace`].
+    fn trace_like_for_like(
+        &self,
+        rays: &[Ray],
+        mode: Mode,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled>;
 
     /// Traces one world ray and counts what the traversal does; a listener hears every step. The
     /// hit is the same.
@@ -132,23 +148,22 @@ impl<S: Structure> Accel for S {
 
     fn trace(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<Traced, Cancelled> {
         debug_assert_eq!(rays.len(), hits.len());
-        if let ([ray], [hit]) = (rays, &mut *hits) {
-            cancel.check()?;
-            let mut traced = Traced::default();
-            *hit =
-                match mode {
-                    Mode::Closest => in_scaled_space(Structure::geometry(self), ray, &mut traced, |ray| {
-                        Ok(self.trace_one(ray, &Closest, &mut Off))
-                    }),
-                    Mode::Any => in_scaled_space(Structure::geometry(self), ray, &mut traced, |ray| {
-                        Ok(self.trace_one(ray, &AnyHit, &mut Off))
-                    }),
-                }?;
-            return Ok(traced);
-        }
         match mode {
             Mode::Closest => self.trace_batch(rays, &Closest, hits, cancel),
             Mode::Any => self.trace_batch(rays, &AnyHit, hits, cancel),
+        }
+    }
+
+    fn trace_like_for_like(
+        &self,
+        rays: &[Ray],
+        mode: Mode,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        match mode {
+            Mode::Closest => self.trace_plain(rays, &Closest, hits, cancel),
+            Mode::Any => self.trace_plain(rays, &AnyHit, hits, cancel),
         }
     }
 
@@ -162,6 +177,25 @@ impl<S: Structure> Accel for S {
         let local = |ray: &Ray| self.trace_stoppable(ray, &Asked::Nothing, &mut watched, cancel);
         in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local).map(|_| ()) // there is no hit
     }
+}
+
+/// Traces world rays one after another.
+#[inline(always)]
+fn one_by_one(
+    geometry: &Geometry,
+    rays: &[Ray],
+    hits: &mut [Option<Hit>],
+    cancel: &Cancel,
+    trace: impl Fn(&Ray) -> Option<PrimHit>,
+) -> Result<Traced, Cancelled> {
+    let mut traced = Traced::default();
+    for (rays, hits) in rays.chunks(RAYS_PER_CHECK).zip(hits.chunks_mut(RAYS_PER_CHECK)) {
+        cancel.check()?;
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = in_scaled_space(geometry, ray, &mut traced, |ray| Ok(trace(ray)))?;
+        }
+    }
+    Ok(traced)
 }
 
 /// Brings a world ray into the scaled space, traces it there, and brings the hit back.

@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use super::estimate::secs_per_ray;
 use super::least_squares::non_negative;
-use super::measure::Contestant;
+use super::measure::{Contestant, Fairness};
 use super::rays::{RayKind, RaySet};
 use super::sample::spread;
 use crate::accel::Mode;
@@ -127,7 +127,7 @@ impl<'a> Lane<'a> {
     ) -> Result<Self, Cancelled> {
         let mut slowest = 0.0f64;
         for set in sets {
-            let secs = secs_per_ray(contestant, set, pool, cancel)?;
+            let secs = secs_per_ray(contestant, set, Fairness::LikeForLike, pool, cancel)?;
             slowest = slowest.max(if secs.is_finite() { secs * pool.threads() as f64 } else { 0.0 });
         }
         // Beside the timed passes one to warm up, and two that count.
@@ -150,7 +150,7 @@ impl<'a> Lane<'a> {
         let mut hits = vec![None; self.rays_per_block];
         for Block { mode, rays, secs } in &mut self.blocks {
             let start = Instant::now();
-            self.contestant.accel.trace(rays, *mode, &mut hits, cancel)?;
+            self.contestant.accel.trace_like_for_like(rays, *mode, &mut hits, cancel)?;
             if timed {
                 *secs = secs.min(start.elapsed().as_secs_f64());
             }

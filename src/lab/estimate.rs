@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::measure::{Contestant, trace_all};
+use super::measure::{Contestant, Fairness, trace_all};
 use super::rays::RaySet;
 use super::sample::pick;
 use crate::task::{Cancel, Cancelled, Pool};
@@ -18,12 +18,18 @@ pub const FEWEST: usize = 16;
 
 /// Wall-clock seconds for one ray on this pool, from ever larger parts of the set, evenly spread:
 /// the least of all tries.
-pub fn secs_per_ray(contestant: &Contestant, set: &RaySet, pool: &Pool, cancel: &Cancel) -> Result<f64, Cancelled> {
+pub fn secs_per_ray(
+    contestant: &Contestant,
+    set: &RaySet,
+    terms: Fairness,
+    pool: &Pool,
+    cancel: &Cancel,
+) -> Result<f64, Cancelled> {
     let (mut n, mut total, mut best) = (FEWEST, 0.0, f64::INFINITY);
     for tries in 1.. {
         let rays = pick(&set.rays, n);
         let start = Instant::now();
-        trace_all(contestant, &rays, set.mode, pool, cancel)?;
+        trace_all(contestant, &rays, set.mode, terms, pool, cancel)?;
         let secs = start.elapsed().as_secs_f64();
         total += secs;
         best = best.min(secs / rays.len().max(1) as f64);

@@ -33,11 +33,12 @@ pub struct Contestant {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fairness {
-    /// Scalar code, one ray at a time, the same triangle test: what is compared is the structure.
+    /// Plain code that every processor runs, one ray at a time, the same triangle test: what is compared
+    /// is the structure.
     #[default]
     LikeForLike,
-    /// Each structure in the fastest form there is of it. As long as all forms are scalar and trace
-    /// one ray at a time, that is the same.
+    /// Each structure in the fastest form there is of it: batches of rays, the processor's own
+    /// instructions.
     Best,
 }
 
@@ -45,7 +46,7 @@ impl Fairness {
     /// The name in tables.
     pub const fn label(self) -> &'static str {
         match self {
-            Self::LikeForLike => "like for like (scalar, single ray, same triangle test)",
+            Self::LikeForLike => "like for like (plain code, single ray, same triangle test)",
             Self::Best => "each at its best",
         }
     }
@@ -123,6 +124,7 @@ struct Lane<'a> {
     of: usize,
     secs_per_ray: f64,
     hits: u64,
+    terms: Fairness,
     secs: Vec<f64>,
 }
 
@@ -136,18 +138,19 @@ impl<'a> Lane<'a> {
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
         let within = |secs_per_ray| rays_within(options.cap_secs, options.min_rounds + 1, secs_per_ray);
-        let mut secs_per_ray = secs_per_ray(contestant, set, pool, cancel)?;
+        let terms = options.fairness;
+        let mut secs_per_ray = secs_per_ray(contestant, set, terms, pool, cancel)?;
         let mut rays = part(set, within(secs_per_ray));
         let start = Instant::now();
-        let mut hits = trace_all(contestant, &rays, set.mode, pool, cancel)?;
+        let mut hits = trace_all(contestant, &rays, set.mode, terms, pool, cancel)?;
         let found = start.elapsed().as_secs_f64() / rays.len().max(1) as f64;
         // The few rays of the estimate may have been the easy ones.
         if within(found) < rays.len() / 3 * 2 {
             (secs_per_ray, rays) = (found, part(set, within(found)));
-            hits = trace_all(contestant, &rays, set.mode, pool, cancel)?;
+            hits = trace_all(contestant, &rays, set.mode, terms, pool, cancel)?;
         }
         progress.advance(1);
-        Ok(Self { contestant, rays, mode: set.mode, of: set.rays.len(), secs_per_ray, hits, secs: Vec::new() })
+        Ok(Self { contestant, rays, mode: set.mode, of: set.rays.len(), secs_per_ray, hits, terms, secs: Vec::new() })
     }
 
     fn counted(&self, set: &RaySet, pool: &Pool, cancel: &Cancel, progress: &Progress) -> Result<Timing, Cancelled> {
@@ -180,7 +183,7 @@ impl<'a> Lane<'a> {
 impl Racer for Lane<'_> {
     fn round(&mut self, pool: &Pool, cancel: &Cancel) -> Result<(), Cancelled> {
         let start = Instant::now();
-        trace_all(self.contestant, &self.rays, self.mode, pool, cancel)?;
+        trace_all(self.contestant, &self.rays, self.mode, self.terms, pool, cancel)?;
         self.secs.push(start.elapsed().as_secs_f64());
         Ok(())
     }
@@ -209,13 +212,17 @@ pub(super) fn trace_all(
     contestant: &Contestant,
     rays: &[Ray],
     mode: Mode,
+    terms: Fairness,
     pool: &Pool,
     cancel: &Cancel,
 ) -> Result<u64, Cancelled> {
     let chunk = chunk_len(rays.len(), pool.threads());
     let trace = |hits: &mut Vec<Option<crate::accel::Hit>>, rays: &[Ray]| {
         hits.resize(rays.len(), None);
-        contestant.accel.trace(rays, mode, hits, cancel)?;
+        match terms {
+            Fairness::LikeForLike => contestant.accel.trace_like_for_like(rays, mode, hits, cancel)?,
+            Fairness::Best => contestant.accel.trace(rays, mode, hits, cancel)?,
+        };
         Ok(hits.iter().filter(|hit| hit.is_some()).count() as u64)
     };
     pool.run(|| rays.par_chunks(chunk).map_init(Vec::new, trace).try_reduce(|| 0, |a, b| Ok(a + b)))

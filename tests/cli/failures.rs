@@ -23,7 +23,7 @@ fn a_bad_model_is_named_with_the_reason() {
 #[test]
 fn bad_arguments_are_explained() {
     let cases: [(&[&str], &str); 14] = [
-        (&["stats", "builtin:lecture", "--structure", "oak"], "brute, bound, bvh, volumes, kdtree, grid"),
+        (&["stats", "builtin:lecture", "--structure", "oak"], "brute, bound, bvh, wide, volumes, kdtree, grid"),
         (&["stats", "builtin:lecture"], "--structure"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "bins=1"], "a whole number from 2"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "leaves=1"], "there is builder"),

@@ -1,7 +1,7 @@
 //! Mouse and keys in the viewport.
 
 use boxwood::scene::{Camera, Projection};
-use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Role, TouchPhase, Vec2, vec2};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Role, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
 
 use crate::window::Window;
@@ -54,26 +54,39 @@ fn shift_or_the_middle_button_pans() {
 fn the_wheel_zooms_and_home_comes_back() {
     let mut w = teapot();
     let first = w.state().camera;
-    let notch = |y: f32| Event::MouseWheel {
-        unit: MouseWheelUnit::Line,
-        delta: vec2(0.0, y),
-        phase: TouchPhase::Move,
-        source: MouseWheelSource::Unknown,
-        modifiers: Modifiers::NONE,
-    };
-    w.harness.hover_at(w.viewport().center() + vec2(40.0, 10.0));
-    (0..3).for_each(|_| w.harness.event(notch(1.0)));
-    w.harness.run_steps(30);
+    w.wheel(w.viewport().center() + vec2(40.0, 10.0), 3);
     let closer = distance(&w.state().camera);
     assert!(closer < 0.95 * distance(&first), "{closer} of {}", distance(&first));
-    (0..6).for_each(|_| w.harness.event(notch(-1.0)));
-    w.harness.run_steps(30);
+    w.wheel(w.viewport().center() + vec2(40.0, 10.0), -6);
     assert!(distance(&w.state().camera) > distance(&first));
     w.key(Modifiers::NONE, Key::Home);
     let framed = w.state().camera;
     w.drag(w.viewport().center(), vec2(0.0, 60.0), PointerButton::Middle, Modifiers::NONE);
     w.key(Modifiers::NONE, Key::Home);
     assert!(w.state().camera.eye.distance(framed.eye) < 1e-3 * distance(&framed));
+}
+
+/// A frame in which the camera moved is gone over twice, with the same input.
+#[test]
+fn a_key_turns_the_camera_once_and_in_its_own_frame() {
+    let mut w = teapot();
+    w.drag(w.viewport().center(), vec2(30.0, 0.0), PointerButton::Primary, Modifiers::NONE);
+    let before = w.state().camera;
+    let angle = |camera: &Camera| {
+        let (a, b) = (before.eye - before.target, camera.eye - camera.target);
+        (a.dot(b) / (a.length() * b.length())).clamp(-1.0, 1.0).acos()
+    };
+    let request = w.state().answer.map(|answer| answer.request);
+    w.harness.key_press(Key::ArrowLeft);
+    w.harness.step();
+    let once = angle(&w.state().camera);
+    assert!(once > 0.0, "the frame of the key shows the camera turned");
+    w.settle();
+    assert_eq!(angle(&w.state().camera), once, "and it is not turned again");
+    assert_ne!(w.state().answer.map(|answer| answer.request), request);
+    w.key(Modifiers::NONE, Key::ArrowLeft);
+    let twice = angle(&w.state().camera);
+    assert!((twice - 2.0 * once).abs() < 0.02 * once, "{once} and then {twice}");
 }
 
 #[test]

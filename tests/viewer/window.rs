@@ -8,7 +8,9 @@ use std::time::{Duration, Instant};
 use boxwood::viewer::dialogs::FileDialog;
 use boxwood::viewer::state::State;
 use boxwood::viewer::{App, ViewerOptions};
-use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, Shape, Vec2};
+use eframe::egui::{
+    self, Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect, Role, Shape, TouchPhase, Vec2, vec2,
+};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -308,6 +310,20 @@ impl Window {
         self.harness.event(Event::PointerGone);
         self.step();
         self.step();
+    }
+
+    /// Turns the wheel by so many notches over a place: up is positive.
+    pub fn wheel(&mut self, at: Pos2, notches: i32) {
+        let notch = Event::MouseWheel {
+            unit: MouseWheelUnit::Line,
+            delta: vec2(0.0, notches.signum() as f32),
+            phase: TouchPhase::Move,
+            source: MouseWheelSource::Unknown,
+            modifiers: Modifiers::NONE,
+        };
+        self.harness.hover_at(at);
+        (0..notches.abs()).for_each(|_| self.harness.event(notch.clone()));
+        self.harness.run_steps(30);
     }
 
     /// The text of the last frame.

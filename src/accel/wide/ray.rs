@@ -13,8 +13,8 @@ use crate::accel::best::Best;
 use crate::accel::bvh::MAX_DEPTH;
 use crate::accel::probe::{Probe, Prune};
 use crate::accel::{PrimHit, Query};
-use crate::geometry::Ray;
 use crate::geometry::tri::TriTest;
+use crate::geometry::{Ray, num};
 use crate::scene::Geometry;
 use crate::simd::{LANES, LEFT, Simd, UNDER_XOR};
 use glam::Vec3;
@@ -97,8 +97,23 @@ impl<'a, T: TriTest> Walk<'a, T> {
         probe.at(child.id(nodes.len()));
         if child.is_node() {
             self.enter(s, nodes, child, probe);
+        } else if P::WATCHES {
+            // Whoever watches sees the leaf as a whole.
+            probe.leaf();
+            self.top -= 1;
+            for block in child.blocks() {
+                self.look(s, blocks, num::index(block), probe);
+                if self.settle(s, nodes, blocks, query, probe) {
+                    return false;
+                }
+            }
         } else {
-            self.look(s, blocks, child, probe);
+            let (first, rest) = child.split_first();
+            match rest {
+                Some(rest) => self.open.children[self.top - 1] = rest,
+                None => self.top -= 1,
+            }
+            self.look(s, blocks, first, probe);
         }
         true
     }
@@ -143,20 +158,13 @@ impl<'a, T: TriTest> Walk<'a, T> {
         }
     }
 
-    /// Looks at the first block of a leaf; what is left of it stays where it is.
+    /// Looks which triangles of a block may be met.
     #[inline(always)]
-    fn look<S: Simd, B: Pack, P: Probe>(&mut self, s: S, blocks: &[B], child: Child, probe: &mut P) {
-        let (first, rest) = child.split_first();
-        self.top -= 1;
-        if let Some(rest) = rest {
-            self.open.children[self.top] = rest;
-            self.top += 1;
-        }
-        let block = &blocks[first as usize];
+    fn look<S: Simd, B: Pack, P: Probe>(&mut self, s: S, blocks: &[B], at: u32, probe: &mut P) {
+        let block = &blocks[at as usize];
         self.met = self.test.may_meet(s, block) & block.lanes();
-        self.met_block = first;
+        self.met_block = at;
         if P::WATCHES {
-            probe.leaf();
             // The others were tested, too, and missed.
             (self.met.count_ones()..block.lanes().count_ones()).for_each(|_| probe.prim());
         }

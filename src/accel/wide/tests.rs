@@ -8,7 +8,7 @@ use super::leaf::{Patch, Plain};
 use super::*;
 use crate::accel::cell::walk;
 use crate::accel::params::ParamValues;
-use crate::accel::{Accel, Cells, Hit, Mode, registry};
+use crate::accel::{Accel, Hit, Mode, registry};
 use crate::geometry::Ray;
 use crate::geometry::tri::{Fast, TestKind, Watertight};
 use crate::scene::{LoadCx, open as open_scene};
@@ -20,7 +20,7 @@ use tree::Tree;
 fn geometry(model: &str) -> Arc<Geometry> {
     let cx = LoadCx { cancel: Cancel::new(), progress: Progress::new(), budget: Budget::unlimited(), pool: Pool::new("load", 1) };
     let scene = open_scene(model, &cx).expect("a built-in scene");
-    Arc::new(Geometry::new(&scene, &cx).ok().expect("small"))
+    Arc::new(Geometry::new(&scene, &cx).expect("small"))
 }
 
 fn params(set: &[(&str, &str)]) -> ParamValues {
@@ -61,7 +61,7 @@ fn equals_brute<T: TriTest, B: leaf::Pack>(model: &str, set: &[(&str, &str)], ki
     let p = params(set);
     let rays = rays(&geometry);
     let expected = trace(&*brute, &rays, Mode::Closest);
-    assert!(expected.iter().flatten().count() > 500, "{model}: most rays miss");
+    assert!(expected.iter().flatten().count() > 100, "{model}: most rays miss");
     let any = trace(&*brute, &rays, Mode::Any);
     for road in Road::all() {
         let drafted = bvh::draft(&geometry, &p, &cx).expect("small");
@@ -86,7 +86,7 @@ fn patches_give_the_hits_of_brute_force_on_every_road() {
 #[test]
 fn plain_leaves_give_the_hits_of_brute_force_on_every_road() {
     equals_brute::<Watertight, Plain>("builtin:menger", &[], TestKind::Watertight);
-    equals_brute::<Fast, Plain>("builtin:hair?triangles=2000", &[("wide_leaf", "20")], TestKind::Fast);
+    equals_brute::<Fast, Plain>("builtin:hair?triangles=20000", &[("wide_leaf", "20")], TestKind::Fast);
 }
 
 #[test]

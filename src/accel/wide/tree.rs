@@ -11,8 +11,8 @@ use super::node::Node;
 use super::ray::{Open, Walk};
 use super::slots::bits;
 use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape};
-use crate::accel::probe::Probe;
-use crate::accel::{Hit, PrimHit, Query, Structure, Traced};
+use crate::accel::probe::{Off, Probe};
+use crate::accel::{Hit, PrimHit, Query, Structure, Traced, one_by_one};
 use crate::geometry::tri::TriTest;
 use crate::geometry::{Aabb, Ray};
 use crate::scene::{Geometry, PrimRef};
@@ -54,10 +54,23 @@ impl<T: TriTest, B: Pack> Tree<T, B> {
 
     #[inline(always)]
     fn walk<S: Simd, Q: Query, P: Probe>(&self, s: S, ray: &Ray, query: &Q, probe: &mut P, open: &mut Open) -> Option<PrimHit> {
+        if self.root == Child::NONE {
+            return None;
+        }
         let mut walk = Walk::<T>::idle(&self.geometry, open);
         walk.begin(ray, &self.geometry, self.root);
         while walk.step(s, &self.nodes, &self.blocks, query, probe) {}
         walk.found()
+    }
+
+    /// One ray on the tree's road.
+    fn one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
+        with_open(1, |open| self.road.run(One { tree: self, ray, query, probe, open: &mut open[0] }))
+    }
+
+    /// One ray on the plain road.
+    fn plainly<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
+        with_open(1, |open| self.walk(Portable, ray, query, probe, &mut open[0]))
     }
 
     /// Triangles from a block on.
@@ -102,14 +115,8 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
 
     #[inline]
     fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
-        if self.root == Child::NONE {
-            return None;
-        }
-        with_open(1, |open| {
-            let one = One { tree: self, ray, query, probe, open: &mut open[0] };
-            // Rays that are watched are not timed: the plain road is enough for them.
-            if P::WATCHES { Portable.run(one) } else { self.road.run(one) }
-        })
+        // Rays that are watched are not timed: the plain road is enough for them.
+        if P::WATCHES { self.plainly(ray, query, probe) } else { self.one(ray, query, probe) }
     }
 
     fn trace_batch<Q: Query>(
@@ -124,7 +131,21 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
             let invalid = rays.iter().filter(|ray| !ray.is_valid()).count() as u64;
             return Ok(Traced { invalid });
         }
+        // One ray has nobody to take turns with.
+        if rays.len() == 1 {
+            return one_by_one(&self.geometry, rays, hits, cancel, |ray| self.trace_one(ray, query, &mut Off));
+        }
         with_open(TURNS.min(rays.len()), |open| self.road.run(Batch { tree: self, rays, query, hits, cancel, open }))
+    }
+
+    fn trace_plain<Q: Query>(
+        &self,
+        rays: &[Ray],
+        query: &Q,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        one_by_one(&self.geometry, rays, hits, cancel, |ray| self.plainly(ray, query, &mut Off))
     }
 }
 
