@@ -49,7 +49,7 @@ pub struct Args {
     /// Seconds that a structure may take for one kind of rays; a slower one traces a part of them.
     #[arg(long, value_name = "SECS", default_value = "10", value_parser = seconds)]
     cap: f64,
-    /// Compare scalar code, single rays and the same triangle test (the default).
+    /// Compare plain code, single rays and the same triangle test (the default).
     #[arg(long, conflicts_with = "best")]
     like_for_like: bool,
     /// Compare each structure in its fastest form.

@@ -192,7 +192,8 @@ impl Geometry {
     /// The instance that a triangle belongs to, and its index within the instance's mesh.
     #[inline]
     pub fn locate(&self, prim: PrimRef) -> (u32, u32) {
-        let instance = self.first_prim.partition_point(|first| *first <= prim) - 1;
+        // Most flattened scenes hold one mesh: then there is nothing to look for.
+        let instance = if self.first_prim.len() <= 2 { 0 } else { self.first_prim.partition_point(|first| *first <= prim) - 1 };
         (num::index(instance), prim - self.first_prim[instance])
     }
 

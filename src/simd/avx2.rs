@@ -31,6 +31,7 @@ fn enter<K: Kernel>(s: Avx2, kernel: K) -> K::Out {
 
 impl Simd for Avx2 {
     type F = __m256;
+    type M = __m256;
     type I = __m256i;
 
     #[inline(always)]
@@ -112,21 +113,39 @@ impl Simd for Avx2 {
     }
 
     #[inline(always)]
-    fn le(self, a: __m256, b: __m256) -> u32 {
+    fn le(self, a: __m256, b: __m256) -> __m256 {
         // SAFETY: as in `run`.
-        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)).cast_unsigned() }
+        unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(a, b) }
     }
 
     #[inline(always)]
-    fn lt(self, a: __m256, b: __m256) -> u32 {
+    fn lt(self, a: __m256, b: __m256) -> __m256 {
         // SAFETY: as in `run`.
-        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)).cast_unsigned() }
+        unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(a, b) }
     }
 
     #[inline(always)]
-    fn eq(self, a: __m256, b: __m256) -> u32 {
+    fn eq(self, a: __m256, b: __m256) -> __m256 {
         // SAFETY: as in `run`.
-        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_EQ_OQ>(a, b)).cast_unsigned() }
+        unsafe { _mm256_cmp_ps::<_CMP_EQ_OQ>(a, b) }
+    }
+
+    #[inline(always)]
+    fn and(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_and_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn or(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_or_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn bits(self, m: __m256) -> u32 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_movemask_ps(m).cast_unsigned() }
     }
 
     #[inline(always)]

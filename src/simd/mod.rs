@@ -38,6 +38,8 @@ pub trait Kernel {
 pub trait Simd: Copy + Send + Sync + 'static {
     /// Eight floats.
     type F: Copy;
+    /// Eight times yes or no.
+    type M: Copy;
     /// Eight numbers of lanes, 0 to 7.
     type I: Copy;
 
@@ -68,12 +70,18 @@ pub trait Simd: Copy + Send + Sync + 'static {
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     /// `a > b ? a : b`.
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
-    /// One bit for each lane where `a <= b`.
-    fn le(self, a: Self::F, b: Self::F) -> u32;
-    /// One bit for each lane where `a < b`.
-    fn lt(self, a: Self::F, b: Self::F) -> u32;
-    /// One bit for each lane where `a == b`.
-    fn eq(self, a: Self::F, b: Self::F) -> u32;
+    /// Where `a <= b`.
+    fn le(self, a: Self::F, b: Self::F) -> Self::M;
+    /// Where `a < b`.
+    fn lt(self, a: Self::F, b: Self::F) -> Self::M;
+    /// Where `a == b`.
+    fn eq(self, a: Self::F, b: Self::F) -> Self::M;
+    /// Both.
+    fn and(self, a: Self::M, b: Self::M) -> Self::M;
+    /// Either.
+    fn or(self, a: Self::M, b: Self::M) -> Self::M;
+    /// One bit for each lane.
+    fn bits(self, m: Self::M) -> u32;
 
     /// Numbers of lanes from memory; only the three lowest bits count.
     fn indices(self, from: &[u8; LANES]) -> Self::I;

@@ -26,6 +26,7 @@ fn mask(f: impl Fn(usize) -> bool) -> u32 {
 
 impl Simd for Portable {
     type F = Lanes;
+    type M = u32;
     type I = [u8; LANES];
 
     #[inline(always)]
@@ -106,6 +107,21 @@ impl Simd for Portable {
     #[inline(always)]
     fn eq(self, a: Lanes, b: Lanes) -> u32 {
         mask(|i| a[i] == b[i])
+    }
+
+    #[inline(always)]
+    fn and(self, a: u32, b: u32) -> u32 {
+        a & b
+    }
+
+    #[inline(always)]
+    fn or(self, a: u32, b: u32) -> u32 {
+        a | b
+    }
+
+    #[inline(always)]
+    fn bits(self, m: u32) -> u32 {
+        m
     }
 
     #[inline(always)]

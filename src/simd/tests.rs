@@ -35,7 +35,8 @@ impl Kernel for Everything {
             out.extend(floats.map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
             out.extend(bits.map(|x| if f32::from_bits(x).is_nan() { 1 } else { x }));
         }
-        out.extend([s.le(a, b), s.lt(a, b), s.eq(a, b)]);
+        let (le, lt, eq) = (s.le(a, b), s.lt(a, b), s.eq(a, b));
+        out.extend([s.bits(le), s.bits(lt), s.bits(eq), s.bits(s.and(le, lt)), s.bits(s.or(lt, eq))]);
         out
     }
 }

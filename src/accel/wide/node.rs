@@ -23,6 +23,8 @@ pub struct Node {
 #[derive(Clone, Copy, Debug)]
 pub struct RayIn {
     sides: Sides,
+    /// Which plane of each axis is met first: 0 for the least, 1 for the greatest.
+    first: [usize; 3],
     /// Slots are visited in the order of `slot ^ order`, the last first: see [`super::slots`].
     pub order: u32,
 }
@@ -30,13 +32,8 @@ pub struct RayIn {
 impl RayIn {
     #[inline(always)]
     pub fn new(sides: Sides) -> Self {
-        Self { order: !sides.backward & 7, sides }
-    }
-
-    /// Which plane of an axis is met first: 0 for the least, 1 for the greatest.
-    #[inline(always)]
-    const fn first(&self, axis: usize) -> usize {
-        (self.sides.backward >> axis & 1) as usize
+        let backward = sides.backward as usize;
+        Self { first: [backward & 1, backward >> 1 & 1, backward >> 2], order: !sides.backward & 7, sides }
     }
 }
 
@@ -85,18 +82,18 @@ impl Node {
         let [fx, fy, fz] = [self.far(s, ray, 0), self.far(s, ray, 1), self.far(s, ray, 2)];
         let entry = s.max(s.max(nx, ny), s.max(nz, s.splat(tmin)));
         let exit = s.min(s.min(fx, fy), s.min(fz, s.splat(tmax)));
-        Met { slots: s.le(entry, exit), entry }
+        Met { slots: s.bits(s.le(entry, exit)), entry }
     }
 
     #[inline(always)]
     fn near<S: Simd>(&self, s: S, ray: &RayIn, axis: usize) -> S::F {
-        let plane = s.load(&self.planes[axis][ray.first(axis)]);
+        let plane = s.load(&self.planes[axis][ray.first[axis] & 1]);
         s.mul(s.sub(s.splat(ray.sides.near[axis]), plane), s.splat(ray.sides.minus_inv[axis]))
     }
 
     #[inline(always)]
     fn far<S: Simd>(&self, s: S, ray: &RayIn, axis: usize) -> S::F {
-        let plane = s.load(&self.planes[axis][ray.first(axis) ^ 1]);
+        let plane = s.load(&self.planes[axis][ray.first[axis] & 1 ^ 1]);
         s.mul(s.sub(s.splat(ray.sides.far[axis]), plane), s.splat(ray.sides.minus_inv[axis]))
     }
 }

@@ -204,7 +204,7 @@ impl<'a, T: TriTest> Walk<'a, T> {
             let entries = s.load(eight(&mut self.open.entries, from));
             let children = s.load_bits(bytemuck::cast_ref(eight(&mut self.open.children, from)));
             let there = (1u32 << (end - from).min(LANES)) - 1;
-            let stay = s.le(entries, t) & there;
+            let stay = s.bits(s.le(entries, t)) & there;
             if P::LISTENS {
                 for i in super::slots::bits(there & !stay) {
                     probe.pruned(self.open.children[from + i].id(nodes), Prune::BehindHit);

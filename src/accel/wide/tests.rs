@@ -47,6 +47,20 @@ fn rays(geometry: &Geometry) -> Vec<Ray> {
         .collect()
 }
 
+/// Rays of a camera, neighbours side by side, then shadow rays to one light.
+fn coherent(geometry: &Geometry, hits: &[Option<Hit>], rays: &[Ray]) -> Vec<Ray> {
+    let b = geometry.world_bounds();
+    let (centre, size) = (b.centre(), (b.max - b.min).max_element());
+    let eye = centre + size * Vec3::new(0.4, 1.1, 0.7);
+    let (right, up) = (Vec3::new(0.8, 0.0, -0.6), Vec3::new(-0.3, 0.8, -0.5));
+    let across = |i: u16| right * (f32::from(i % 80) / 80.0 - 0.5) + up * (f32::from(i / 80) / 80.0 - 0.5);
+    let tmin = |i: u16| if i.is_multiple_of(11) { 0.8 } else { 0.0 };
+    let camera = (0..6400).map(|i| Ray { tmin: tmin(i), ..Ray::new(eye, centre - eye + size * across(i)) });
+    let light = centre + size * Vec3::new(0.1, 3.0, 0.2);
+    let points = rays.iter().zip(hits).filter_map(|(ray, hit)| hit.map(|hit| ray.at(hit.t)));
+    camera.chain(points.map(|p| Ray { tmin: 1e-4, ..Ray::segment(p, light) })).collect()
+}
+
 fn trace(accel: &dyn Accel, rays: &[Ray], mode: Mode) -> Vec<Option<Hit>> {
     let mut hits = vec![None; rays.len()];
     accel.trace(rays, mode, &mut hits, &Cancel::new()).expect("not cancelled");
@@ -59,7 +73,10 @@ fn equals_brute<T: TriTest, B: leaf::Pack>(model: &str, set: &[(&str, &str)], ki
     let brute = registry::find("brute").expect("registered");
     let brute = brute.build(&geometry, kind, &brute.defaults(), &cx).expect("small");
     let p = params(set);
-    let rays = rays(&geometry);
+    let scattered = rays(&geometry);
+    let first = trace(&*brute, &scattered, Mode::Closest);
+    let mut rays = coherent(&geometry, &first, &scattered);
+    rays.extend(scattered);
     let expected = trace(&*brute, &rays, Mode::Closest);
     assert!(expected.iter().flatten().count() > 100, "{model}: most rays miss");
     let any = trace(&*brute, &rays, Mode::Any);

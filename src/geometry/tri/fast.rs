@@ -63,6 +63,6 @@ impl TriTest for Fast {
         let inv = s.div(one, e1.dot(s, p));
         let u = s.mul(o.dot(s, p), inv);
         let v = s.mul(d.dot(s, q), inv);
-        s.le(zero, u) & s.le(u, one) & s.le(zero, v) & s.le(s.add(u, v), one)
+        s.bits(s.and(s.and(s.le(zero, u), s.le(u, one)), s.and(s.le(zero, v), s.le(s.add(u, v), one))))
     }
 }

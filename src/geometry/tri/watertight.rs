@@ -77,7 +77,7 @@ impl TriTest for Watertight {
         // A zero is settled in 64 bits later; what is not zero has the right sign already.
         let zero = s.splat(0.0);
         let (least, greatest) = (s.min(s.min(u, v), w), s.max(s.max(u, v), w));
-        s.le(zero, least) | s.le(greatest, zero)
+        s.bits(s.or(s.le(zero, least), s.le(greatest, zero)))
     }
 }
 

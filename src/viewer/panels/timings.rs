@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.horizontal(|ui| {
         heading(ui, "Timings");
         ui.label(
-            RichText::new("Like for like: scalar, one ray at a time, the same triangle test")
+            RichText::new("Like for like: plain code, one ray at a time, the same triangle test")
                 .small()
                 .color(Palette::in_ui(ui).dim),
         )
