@@ -78,7 +78,7 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
         }
         while active > 0 {
             for turn in &mut turns {
-                if turn.walk.step(s, &tree.nodes, &tree.blocks, query, &mut Off) {
+                if turn.walk.step::<S, B, Q, Off>(s, &tree.units, query, &mut Off) {
                     tree.prefetch(s, turn.walk.next());
                 } else if turn.on_its_way {
                     rest.end(turn);

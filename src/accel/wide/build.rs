@@ -4,12 +4,13 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 use super::ID;
-use super::child::{Child, MAX_BLOCKS, MAX_INDEX};
+use super::child::{Child, MAX_BLOCKS, MAX_UNITS};
 use super::collapse::{Collapse, Costs};
 use super::leaf::{Pack, Patch};
 use super::node::Node;
 use super::slots;
 use super::tree::Tree;
+use super::unit::{self, Unit};
 use crate::accel::bvh::{self, Drafted};
 use crate::accel::params::ParamValues;
 use crate::accel::{BuildCx, BuildError};
@@ -61,7 +62,7 @@ pub fn build<T, B: Pack>(
     cx: &BuildCx,
 ) -> Result<Tree<T, B>, BuildError> {
     let Drafted { draft, splits, remarks, peak } = drafted;
-    let (mut nodes, mut blocks, mut root) = (Vec::new(), Vec::new(), Child::NONE);
+    let (mut whole, mut root) = (Packed::default(), Child::NONE);
     if !draft.nodes.is_empty() {
         let costs =
             Costs { node: 1.0, block: p.float("c_block") as f32, max_leaf: p.int("wide_leaf") as u8, per_block: B::USUAL };
@@ -70,15 +71,14 @@ pub fn build<T, B: Pack>(
         let collapse = Collapse::of(&draft, &costs, cx)?;
         cx.progress.start("pack", draft.refs.len() as u64);
         let packer = Packer { geometry, draft: &draft, collapse: &collapse, cx };
-        let mut whole = Packed::default();
-        root = packer.pack(&mut whole)?;
-        (nodes, blocks) = (whole.nodes, whole.blocks);
+        root = packer.pack::<B>(&mut whole)?;
     }
     drop((draft, peak));
-    let bytes = nodes.capacity() * size_of::<Node>() + blocks.capacity() * size_of::<B>();
+    let bytes = whole.units.capacity() * unit::BYTES;
     let charge = cx.budget.charge(bytes as u64).map_err(too_large)?;
     let geometry = Arc::clone(geometry);
-    Ok(Tree { geometry, nodes, blocks, root, splits, remarks, road: Road::best(), _charge: charge, test: PhantomData })
+    let Packed { units, nodes } = whole;
+    Ok(Tree { geometry, units, nodes, root, splits, remarks, road: Road::best(), _charge: charge, test: PhantomData })
 }
 
 fn too_large(over: OverBudget) -> BuildError {
@@ -86,22 +86,45 @@ fn too_large(over: OverBudget) -> BuildError {
 }
 
 /// Nodes and blocks that several threads make: each its own, put together at the end.
-#[derive(Debug)]
-struct Packed<B> {
-    nodes: Vec<Node>,
-    blocks: Vec<B>,
+#[derive(Debug, Default)]
+struct Packed {
+    units: Vec<Unit>,
+    /// How many nodes are among them.
+    nodes: usize,
 }
 
-impl<B> Default for Packed<B> {
-    fn default() -> Self {
-        Self { nodes: Vec::new(), blocks: Vec::new() }
+impl Packed {
+    /// Appends a node; where it lies.
+    fn push_node(&mut self, slots: &[(Child, Aabb); LANES]) -> u32 {
+        self.nodes += 1;
+        num::index(unit::push(&mut self.units, &Node::new(slots)))
+    }
+
+    /// Writes what a slot of a node refers to.
+    fn refer(&mut self, slot: Option<(u32, usize)>, child: Child) {
+        if let Some((node, slot)) = slot {
+            Node::at_mut(&mut self.units, node).refer(slot, child);
+        }
+    }
+
+    /// Moves all that is below a child `by` units on.
+    fn moved(&mut self, root: Child, by: u32) -> Child {
+        let mut open = vec![root];
+        while let Some(child) = open.pop().filter(|child| child.is_node()) {
+            let node = Node::at_mut(&mut self.units, child.place());
+            open.extend(node.children().iter().filter(|child| child.is_node()));
+            for slot in 0..LANES {
+                node.refer(slot, node.children()[slot].moved(by));
+            }
+        }
+        root.moved(by)
     }
 }
 
 /// A part of the tree that is packed on its own: its node in the binary tree, and whose slot it is.
 struct Part {
     from: u32,
-    slot: Option<(usize, usize)>,
+    slot: Option<(u32, usize)>,
 }
 
 struct Packer<'a> {
@@ -114,7 +137,7 @@ struct Packer<'a> {
 impl Packer<'_> {
     /// The upper nodes first, until there are parts enough for all threads; then the parts, side by
     /// side.
-    fn pack<B: Pack>(&self, whole: &mut Packed<B>) -> Result<Child, BuildError> {
+    fn pack<B: Pack>(&self, whole: &mut Packed) -> Result<Child, BuildError> {
         let mut open = std::collections::VecDeque::from([Part { from: 0, slot: None }]);
         let mut parts = Vec::new();
         while let Some(part) = open.pop_front() {
@@ -122,38 +145,39 @@ impl Packer<'_> {
                 parts.push(part);
                 continue;
             }
-            let index = whole.nodes.len();
-            refer(whole, part.slot, Child::node(num::index(index)));
             let slots = self.slots(part.from);
-            whole.nodes.push(Node::new(&slots));
+            let place = whole.push_node(&slots);
+            whole.refer(part.slot, Child::node(place));
             let used = slots.iter().enumerate().filter(|(_, (child, _))| *child != Child::NONE);
-            open.extend(used.map(|(slot, (child, _))| Part { from: num::index(child.index()), slot: Some((index, slot)) }));
+            open.extend(used.map(|(slot, (child, _))| Part { from: child.place(), slot: Some((place, slot)) }));
         }
         let pack = |part: &Part| {
-            let mut list = Packed::<B>::default();
-            self.child(part.from, &mut list, &mut Vec::new()).map(|root| (list, root))
+            let mut list = Packed::default();
+            self.child::<B>(part.from, &mut list, &mut Vec::new()).map(|root| (list, root))
         };
         let packed: Result<Vec<_>, _> = self.cx.pool.run(|| parts.par_iter().map(pack).collect());
-        let packed: Vec<(Packed<B>, Child)> = packed?;
-        let nodes = packed.iter().map(|(list, _)| list.nodes.len()).sum::<usize>();
-        let blocks = packed.iter().map(|(list, _)| list.blocks.len()).sum();
-        let mut all = list_in_large_pages(whole.nodes.len() + nodes);
-        all.append(&mut whole.nodes);
-        whole.nodes = all;
-        whole.blocks = list_in_large_pages(blocks);
-        if whole.nodes.len() + nodes > MAX_INDEX || blocks > MAX_INDEX {
-            return Err(too_many());
+        let packed: Vec<(Packed, Child)> = packed?;
+        let units = whole.units.len() + packed.iter().map(|(list, _)| list.units.len()).sum::<usize>();
+        if units > MAX_UNITS {
+            return Err(BuildError::TooMany {
+                structure: ID,
+                what: "units of 32 bytes",
+                limit: MAX_UNITS as u64,
+                remedy: "Use a smaller model.",
+            });
         }
+        let mut all = list_in_large_pages(units);
+        all.append(&mut whole.units);
+        whole.units = all;
         let mut root = Child::node(0);
-        for (part, (list, child)) in parts.iter().zip(packed) {
-            let (by, from) = (num::index(whole.nodes.len()), num::index(whole.blocks.len()));
-            let child = child.moved(by, from);
-            refer(whole, part.slot, child);
+        for (part, (mut list, child)) in parts.iter().zip(packed) {
+            let child = list.moved(child, num::index(whole.units.len()));
+            whole.refer(part.slot, child);
             if part.slot.is_none() {
                 root = child;
             }
-            whole.nodes.extend(list.nodes.iter().map(|node| node.moved(by, from)));
-            whole.blocks.extend_from_slice(&list.blocks);
+            whole.units.append(&mut list.units);
+            whole.nodes += list.nodes;
         }
         Ok(root)
     }
@@ -168,48 +192,47 @@ impl Packer<'_> {
     }
 
     /// Writes all below a node of the binary tree, depth first, and returns what refers to it.
-    fn child<B: Pack>(&self, at: u32, list: &mut Packed<B>, prims: &mut Vec<PrimRef>) -> Result<Child, BuildError> {
+    fn child<B: Pack>(&self, at: u32, list: &mut Packed, prims: &mut Vec<PrimRef>) -> Result<Child, BuildError> {
         if self.collapse.is_leaf(at) {
             prims.clear();
             self.gather(at, prims);
             self.cx.progress.advance(prims.len() as u64);
-            return Ok(self.leaf(prims, list));
+            return Ok(self.leaf::<B>(prims, list));
         }
         self.cx.cancel.check()?;
-        let index = list.nodes.len();
-        let mut slots = self.slots(at);
-        list.nodes.push(Node::new(&slots));
-        for (child, _) in slots.iter_mut().filter(|(child, _)| *child != Child::NONE) {
-            *child = self.child(num::index(child.index()), list, prims)?;
+        let slots = self.slots(at);
+        let place = list.push_node(&slots);
+        for (slot, (child, _)) in slots.iter().enumerate().filter(|(_, (child, _))| *child != Child::NONE) {
+            let child = self.child::<B>(child.place(), list, prims)?;
+            list.refer(Some((place, slot)), child);
         }
-        list.nodes[index] = Node::new(&slots);
-        Ok(Child::node(num::index(index)))
+        Ok(Child::node(place))
     }
 
     /// The blocks of one leaf. One that does not fit into the most there can be becomes several
     /// below a node of its own.
-    fn leaf<B: Pack>(&self, prims: &mut [PrimRef], list: &mut Packed<B>) -> Child {
-        let first = list.blocks.len();
-        let mut done = 0;
-        while done < prims.len() && list.blocks.len() - first < MAX_BLOCKS {
+    fn leaf<B: Pack>(&self, prims: &mut [PrimRef], list: &mut Packed) -> Child {
+        let first = list.units.len();
+        let (mut done, mut blocks) = (0, 0);
+        while done < prims.len() && blocks < MAX_BLOCKS {
             let (block, count) = B::pack(self.geometry, &mut prims[done..]);
-            list.blocks.push(block);
+            unit::push(&mut list.units, &block);
             done += count;
+            blocks += 1;
         }
         if done == prims.len() {
-            return Child::leaf(num::index(first), num::index(list.blocks.len() - first));
+            return Child::leaf(num::index(first), num::index(blocks));
         }
-        list.blocks.truncate(first);
-        let index = list.nodes.len();
+        list.units.truncate(first);
+        let place = list.push_node(&[(Child::NONE, Aabb::EMPTY); LANES]);
         let mut slots = [(Child::NONE, Aabb::EMPTY); LANES];
-        list.nodes.push(Node::new(&slots));
         let each = prims.len().div_ceil(LANES);
         for (slot, part) in slots.iter_mut().zip(prims.chunks_mut(each)) {
             let bounds = part.iter().fold(Aabb::EMPTY, |b, prim| b.union(Aabb::of_triangle(&self.geometry.corners(*prim))));
-            *slot = (self.leaf(part, list), bounds);
+            *slot = (self.leaf::<B>(part, list), bounds);
         }
-        list.nodes[index] = Node::new(&slots);
-        Child::node(num::index(index))
+        *Node::at_mut(&mut list.units, place) = Node::new(&slots);
+        Child::node(place)
     }
 
     /// All triangles below a node, each once.
@@ -232,15 +255,4 @@ impl Packer<'_> {
             prims.dedup();
         }
     }
-}
-
-/// Writes what a slot refers to.
-fn refer<B>(whole: &mut Packed<B>, slot: Option<(usize, usize)>, child: Child) {
-    if let Some((node, slot)) = slot {
-        whole.nodes[node].refer(slot, child);
-    }
-}
-
-fn too_many() -> BuildError {
-    BuildError::TooMany { structure: ID, what: "nodes", limit: MAX_INDEX as u64, remedy: "Use a smaller model." }
 }

@@ -3,8 +3,8 @@
 /// Another node, the triangles of a leaf, or nothing.
 ///
 /// ```text
-/// node   0 iiiiiii iiiiiiii iiiiiiii iiiiiiii   index of a node
-/// leaf   1 ccciiii iiiiiiii iiiiiiii iiiiiiii   blocks - 1, index of the first
+/// node   0 000pppp pppppppp pppppppp pppppppp   its place, in units
+/// leaf   1 cccpppp pppppppp pppppppp pppppppp   blocks - 1, the place of the first
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
@@ -12,20 +12,20 @@ pub struct Child(u32);
 
 const LEAF: u32 = 1 << 31;
 const COUNT_AT: u32 = 28;
-const BLOCK: u32 = (1 << COUNT_AT) - 1;
+const PLACE: u32 = (1 << COUNT_AT) - 1;
 
 /// The most blocks of a leaf.
 pub const MAX_BLOCKS: usize = 7;
-/// The most blocks, and nodes, that can be referred to.
-pub const MAX_INDEX: usize = BLOCK as usize;
+/// The most units that can be referred to: 8 GiB.
+pub const MAX_UNITS: usize = PLACE as usize;
 
 impl Child {
     /// Nothing: a slot that is not used.
     pub const NONE: Self = Self(u32::MAX);
 
     /// A node.
-    pub const fn node(index: u32) -> Self {
-        Self(index)
+    pub const fn node(place: u32) -> Self {
+        Self(place)
     }
 
     /// The triangles in some blocks, at least one and at most [`MAX_BLOCKS`].
@@ -33,20 +33,12 @@ impl Child {
         Self(LEAF | (blocks - 1) << COUNT_AT | first)
     }
 
-    /// The same in longer lists: a node moved by `by`, blocks by `from`.
-    pub const fn moved(self, by: u32, from: u32) -> Self {
+    /// The same `by` units on.
+    pub const fn moved(self, by: u32) -> Self {
         match self {
             Self::NONE => self,
-            _ if self.is_node() => Self(self.0 + by),
-            _ => Self(self.0 + from),
+            _ => Self(self.0 + by),
         }
-    }
-
-    /// What its cell is called in a structure of so many nodes: those by their index, then leaves by their
-    /// first block.
-    #[inline(always)]
-    pub const fn id(self, nodes: usize) -> u32 {
-        if self.is_node() { self.0 } else { nodes as u32 + (self.0 & BLOCK) }
     }
 
     #[inline(always)]
@@ -54,31 +46,22 @@ impl Child {
         self.0 & LEAF == 0
     }
 
-    /// The index of a node.
+    /// The place of a node, or of a leaf's first block: what its cell is called.
     #[inline(always)]
-    pub const fn index(self) -> usize {
-        self.0 as usize
-    }
-
-    /// The first block of a leaf, and a leaf of the others if there are any.
-    #[inline(always)]
-    pub const fn split_first(self) -> (u32, Option<Self>) {
-        // One block less, one place on.
-        let rest = if self.0 >> COUNT_AT & 7 == 0 { None } else { Some(Self(self.0 - (1 << COUNT_AT) + 1)) };
-        (self.0 & BLOCK, rest)
-    }
-
-    /// The index of a node, or of a leaf's first block.
-    #[inline(always)]
-    pub const fn place(self) -> usize {
-        (self.0 & if self.is_node() { u32::MAX } else { BLOCK }) as usize
+    pub const fn place(self) -> u32 {
+        self.0 & PLACE
     }
 
     /// The blocks of a leaf.
     #[inline(always)]
-    pub const fn blocks(self) -> std::ops::Range<usize> {
-        let first = (self.0 & BLOCK) as usize;
-        first..first + (self.0 >> COUNT_AT & 7) as usize + 1
+    pub const fn blocks(self) -> u32 {
+        (self.0 >> COUNT_AT & 7) + 1
+    }
+
+    /// A leaf without its first block, which takes so many units, if there are others.
+    #[inline(always)]
+    pub const fn rest(self, units: u32) -> Option<Self> {
+        if self.0 >> COUNT_AT & 7 == 0 { None } else { Some(Self(self.0 - (1 << COUNT_AT) + units)) }
     }
 }
 
@@ -88,16 +71,13 @@ mod tests {
 
     #[test]
     fn what_goes_in_comes_out() {
-        assert!(Child::node(5).is_node() && Child::node(5).index() == 5);
+        assert!(Child::node(5).is_node() && Child::node(5).place() == 5);
         for blocks in 1..=MAX_BLOCKS as u32 {
-            for first in [0, 1, BLOCK] {
+            for first in [0, 1, PLACE - 5] {
                 let leaf = Child::leaf(first, blocks);
                 assert!(!leaf.is_node() && leaf != Child::NONE);
-                assert_eq!(leaf.blocks(), first as usize..(first + blocks) as usize);
-                let rest = (blocks > 1).then(|| Child::leaf(first + 1, blocks - 1));
-                if first < BLOCK {
-                    assert_eq!(leaf.split_first(), (first, rest));
-                }
+                assert_eq!((leaf.place(), leaf.blocks()), (first, blocks));
+                assert_eq!(leaf.rest(5), (blocks > 1).then(|| Child::leaf(first + 5, blocks - 1)));
             }
         }
     }

@@ -1,15 +1,23 @@
 //! Triangles of a leaf, eight at a time.
 
+use super::unit::{self, Unit};
 use crate::geometry::tri::{Block, Eight};
 use crate::scene::{Geometry, PrimRef};
 use crate::simd::{LANES, Lanes, Simd};
+use bytemuck::Pod;
 use glam::Vec3;
 
 /// Stands in lanes without a triangle.
 const NONE: PrimRef = PrimRef::MAX;
 
 /// How triangles of a leaf are packed, up to eight together.
-pub trait Pack: Eight + Copy + Send + Sync + std::fmt::Debug + 'static {
+pub trait Pack: Eight + Pod + Send + Sync + std::fmt::Debug {
+    /// Units that one takes.
+    const UNITS: u32 = (size_of::<Self>() / unit::BYTES) as u32;
+
+    /// The one at a place.
+    fn at(units: &[Unit], place: u32) -> &Self;
+
     /// The triangles that one usually holds of a leaf that is large enough.
     const USUAL: u8;
 
@@ -25,7 +33,7 @@ pub trait Pack: Eight + Copy + Send + Sync + std::fmt::Debug + 'static {
 }
 
 /// Corners as they are: 40 bytes a triangle in a full block.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub struct Plain {
     block: Block,
@@ -45,6 +53,11 @@ impl Eight for Plain {
 }
 
 impl Pack for Plain {
+    #[inline(always)]
+    fn at(units: &[Unit], place: u32) -> &Self {
+        unit::at::<Self, { Self::UNITS as usize }>(units, place as usize)
+    }
+
     const USUAL: u8 = LANES as u8;
 
     fn pack(geometry: &Geometry, prims: &mut [PrimRef]) -> (Self, usize) {
@@ -68,7 +81,7 @@ impl Pack for Plain {
 /// Neighbours share corners: eight corners at most, and the numbers of those of each triangle. 160
 /// bytes, less than half as much a triangle on a mesh; a permutation brings a corner of eight triangles
 /// into the lanes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub struct Patch {
     /// By axis.
@@ -95,6 +108,11 @@ impl Eight for Patch {
 }
 
 impl Pack for Patch {
+    #[inline(always)]
+    fn at(units: &[Unit], place: u32) -> &Self {
+        unit::at::<Self, { Self::UNITS as usize }>(units, place as usize)
+    }
+
     /// As on a mesh of about half as many vertices as triangles.
     const USUAL: u8 = 6;
 

@@ -16,6 +16,7 @@ mod slots;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod unit;
 
 use std::sync::Arc;
 

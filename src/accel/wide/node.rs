@@ -5,12 +5,13 @@
 //! place of a minimum and a maximum.
 
 use super::child::Child;
+use super::unit::{self, Unit};
 use crate::geometry::{Aabb, Sides};
 use crate::simd::{LANES, Lanes, Simd};
 use glam::Vec3;
 
 /// Eight boxes and what is in them. 224 bytes: as many cache lines as 256.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub struct Node {
     /// `planes[axis][side][slot]`: the least and the greatest of each box. A slot that is not used is
@@ -46,6 +47,20 @@ pub struct Met<F> {
 }
 
 impl Node {
+    /// Units that it takes.
+    pub const UNITS: usize = size_of::<Self>() / unit::BYTES;
+
+    /// The node at a place.
+    #[inline(always)]
+    pub fn at(units: &[Unit], place: u32) -> &Self {
+        unit::at::<Self, { Self::UNITS }>(units, place as usize)
+    }
+
+    /// The same, to be changed.
+    pub fn at_mut(units: &mut [Unit], place: u32) -> &mut Self {
+        unit::at_mut::<Self, { Self::UNITS }>(units, place as usize)
+    }
+
     pub fn new(children: &[(Child, Aabb); LANES]) -> Self {
         let plane = |side: usize, axis: usize| children.each_ref().map(|(_, b)| [b.min, b.max][side][axis]);
         let planes = [0, 1, 2].map(|axis| [0, 1].map(|side| plane(side, axis)));
@@ -68,11 +83,6 @@ impl Node {
     /// Sets what a slot refers to.
     pub const fn refer(&mut self, slot: usize, child: Child) {
         self.children[slot] = child;
-    }
-
-    /// The same node in longer lists: nodes moved by `by`, blocks by `from`.
-    pub fn moved(&self, by: u32, from: u32) -> Self {
-        Self { children: self.children.map(|child| child.moved(by, from)), ..*self }
     }
 
     /// Boxes entered in `[tmin, tmax]`.

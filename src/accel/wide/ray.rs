@@ -9,12 +9,13 @@
 use super::child::Child;
 use super::leaf::Pack;
 use super::node::{Node, RayIn};
+use super::unit::Unit;
 use crate::accel::best::Best;
 use crate::accel::bvh::MAX_DEPTH;
 use crate::accel::probe::{Probe, Prune};
 use crate::accel::{PrimHit, Query};
+use crate::geometry::Ray;
 use crate::geometry::tri::TriTest;
-use crate::geometry::{Ray, num};
 use crate::scene::Geometry;
 use crate::simd::{LANES, LEFT, Simd, UNDER_XOR};
 use glam::Vec3;
@@ -78,15 +79,8 @@ impl<'a, T: TriTest> Walk<'a, T> {
 
     /// One step: settles what the last one met, then visits what is next. False once all is done.
     #[inline(always)]
-    pub fn step<S: Simd, B: Pack, Q: Query, P: Probe>(
-        &mut self,
-        s: S,
-        nodes: &[Node],
-        blocks: &[B],
-        query: &Q,
-        probe: &mut P,
-    ) -> bool {
-        if self.met != 0 && self.settle(s, nodes, blocks, query, probe) {
+    pub fn step<S: Simd, B: Pack, Q: Query, P: Probe>(&mut self, s: S, units: &[Unit], query: &Q, probe: &mut P) -> bool {
+        if self.met != 0 && self.settle::<S, B, Q, P>(s, units, query, probe) {
             return false;
         }
         if self.top == 0 {
@@ -94,26 +88,25 @@ impl<'a, T: TriTest> Walk<'a, T> {
         }
         let child = self.next();
         probe.node();
-        probe.at(child.id(nodes.len()));
+        probe.at(child.place());
         if child.is_node() {
-            self.enter(s, nodes, child, probe);
+            self.enter(s, Node::at(units, child.place()), probe);
         } else if P::WATCHES {
             // Whoever watches sees the leaf as a whole.
             probe.leaf();
             self.top -= 1;
-            for block in child.blocks() {
-                self.look(s, blocks, num::index(block), probe);
-                if self.settle(s, nodes, blocks, query, probe) {
+            for block in 0..child.blocks() {
+                self.look::<S, B, P>(s, units, child.place() + block * B::UNITS, probe);
+                if self.settle::<S, B, Q, P>(s, units, query, probe) {
                     return false;
                 }
             }
         } else {
-            let (first, rest) = child.split_first();
-            match rest {
+            match child.rest(B::UNITS) {
                 Some(rest) => self.open.children[self.top - 1] = rest,
                 None => self.top -= 1,
             }
-            self.look(s, blocks, first, probe);
+            self.look::<S, B, P>(s, units, child.place(), probe);
         }
         true
     }
@@ -126,8 +119,7 @@ impl<'a, T: TriTest> Walk<'a, T> {
 
     /// Visits a node: the ones that are met take its place, the nearest on top.
     #[inline(always)]
-    fn enter<S: Simd, P: Probe>(&mut self, s: S, nodes: &[Node], child: Child, probe: &mut P) {
-        let node = &nodes[child.index()];
+    fn enter<S: Simd, P: Probe>(&mut self, s: S, node: &Node, probe: &mut P) {
         let met = node.meet(s, &self.ray, self.best.tmin(), self.best.t());
         self.top -= 1;
         let order = self.ray.order;
@@ -141,7 +133,7 @@ impl<'a, T: TriTest> Walk<'a, T> {
         if P::LISTENS {
             for (slot, child) in node.children().iter().enumerate() {
                 if *child != Child::NONE && met.slots >> slot & 1 == 0 {
-                    probe.pruned(child.id(nodes.len()), self.why_not(node, slot));
+                    probe.pruned(child.place(), self.why_not(node, slot));
                 }
             }
         }
@@ -160,8 +152,8 @@ impl<'a, T: TriTest> Walk<'a, T> {
 
     /// Looks which triangles of a block may be met.
     #[inline(always)]
-    fn look<S: Simd, B: Pack, P: Probe>(&mut self, s: S, blocks: &[B], at: u32, probe: &mut P) {
-        let block = &blocks[at as usize];
+    fn look<S: Simd, B: Pack, P: Probe>(&mut self, s: S, units: &[Unit], at: u32, probe: &mut P) {
+        let block = B::at(units, at);
         self.met = self.test.may_meet(s, block) & block.lanes();
         self.met_block = at;
         if P::WATCHES {
@@ -172,15 +164,8 @@ impl<'a, T: TriTest> Walk<'a, T> {
 
     /// Tests what may be met one by one. True if the search is over.
     #[inline(always)]
-    fn settle<S: Simd, B: Pack, Q: Query, P: Probe>(
-        &mut self,
-        s: S,
-        nodes: &[Node],
-        blocks: &[B],
-        query: &Q,
-        probe: &mut P,
-    ) -> bool {
-        let block = &blocks[self.met_block as usize];
+    fn settle<S: Simd, B: Pack, Q: Query, P: Probe>(&mut self, s: S, units: &[Unit], query: &Q, probe: &mut P) -> bool {
+        let block = B::at(units, self.met_block);
         let before = self.best.t();
         while self.met != 0 {
             let lane = self.met.trailing_zeros() as usize % LANES;
@@ -190,14 +175,14 @@ impl<'a, T: TriTest> Walk<'a, T> {
             }
         }
         if self.best.t() < before {
-            self.forget_behind(s, nodes.len(), probe);
+            self.forget_behind(s, probe);
         }
         false
     }
 
     /// Takes out what begins behind the best hit.
     #[inline(always)]
-    fn forget_behind<S: Simd, P: Probe>(&mut self, s: S, nodes: usize, probe: &mut P) {
+    fn forget_behind<S: Simd, P: Probe>(&mut self, s: S, probe: &mut P) {
         let (end, t) = (self.top, s.splat(self.best.t()));
         let (mut from, mut kept) = (0, 0);
         while from < end {
@@ -207,7 +192,7 @@ impl<'a, T: TriTest> Walk<'a, T> {
             let stay = s.bits(s.le(entries, t)) & there;
             if P::LISTENS {
                 for i in super::slots::bits(there & !stay) {
-                    probe.pruned(self.open.children[from + i].id(nodes), Prune::BehindHit);
+                    probe.pruned(self.open.children[from + i].place(), Prune::BehindHit);
                 }
             }
             let order = s.indices(&LEFT[(stay & 0xff) as usize]);

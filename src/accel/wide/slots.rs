@@ -63,7 +63,7 @@ mod tests {
         let order = [3, 1, 7, 0, 2, 6, 5, 4];
         let slots = assign(&whole, &order.map(octant));
         for (slot, (child, _)) in slots.iter().enumerate() {
-            assert_eq!(child.index(), slot);
+            assert_eq!(child.place() as usize, slot);
         }
     }
 

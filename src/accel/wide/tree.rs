@@ -10,6 +10,7 @@ use super::leaf::Pack;
 use super::node::Node;
 use super::ray::{Open, Walk};
 use super::slots::bits;
+use super::unit::{self, Unit};
 use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape};
 use crate::accel::probe::{Off, Probe};
 use crate::accel::{Hit, PrimHit, Query, Structure, Traced, one_by_one};
@@ -23,10 +24,10 @@ use crate::task::{Cancel, Cancelled, Charge};
 #[derive(Debug)]
 pub struct Tree<T, B> {
     pub geometry: Arc<Geometry>,
-    /// Parents before their children, depth first.
-    pub nodes: Vec<Node>,
-    /// In the order of the leaves.
-    pub blocks: Vec<B>,
+    /// Nodes and the blocks of leaves, parents before their children, depth first.
+    pub units: Vec<Unit>,
+    /// How many of them are nodes.
+    pub nodes: usize,
     /// [`Child::NONE`] for a scene without triangles.
     pub root: Child,
     /// Whether triangles are in several leaves.
@@ -36,17 +37,14 @@ pub struct Tree<T, B> {
     /// What it is traced with.
     pub road: Road,
     pub _charge: Charge,
-    pub test: PhantomData<T>,
+    pub test: PhantomData<fn() -> (T, B)>,
 }
 
 impl<T: TriTest, B: Pack> Tree<T, B> {
     /// Asks for what a ray visits next. No branch: whether that is a node is not known yet.
     #[inline(always)]
     pub fn prefetch<S: Simd>(&self, s: S, child: Child) {
-        let from = [self.nodes.as_ptr().addr(), self.blocks.as_ptr().addr()];
-        let size = [size_of::<Node>(), size_of::<B>()];
-        let kind = usize::from(!child.is_node());
-        let at = from[kind] + child.place() * size[kind];
+        let at = self.units.as_ptr().addr() + child.place() as usize * unit::BYTES;
         for line in 0..4 {
             s.prefetch(at + line * 64);
         }
@@ -59,7 +57,7 @@ impl<T: TriTest, B: Pack> Tree<T, B> {
         }
         let mut walk = Walk::<T>::idle(&self.geometry, open);
         walk.begin(ray, &self.geometry, self.root);
-        while walk.step(s, &self.nodes, &self.blocks, query, probe) {}
+        while walk.step::<S, B, Q, P>(s, &self.units, query, probe) {}
         walk.found()
     }
 
@@ -73,19 +71,19 @@ impl<T: TriTest, B: Pack> Tree<T, B> {
         with_open(1, |open| self.walk(Portable, ray, query, probe, &mut open[0]))
     }
 
-    /// Triangles from a block on.
-    fn prims_from(&self, block: usize) -> impl Iterator<Item = PrimRef> + '_ {
-        self.blocks[block..].iter().flat_map(|block| bits(block.lanes()).map(|lane| block.prim(lane)))
+    /// The blocks from a place on.
+    fn blocks_from(&self, place: u32) -> impl Iterator<Item = &B> {
+        (place..).step_by(B::UNITS as usize).map(|place| B::at(&self.units, place))
     }
 
     fn cell(&self, child: Child, bounds: Aabb, depth: u32) -> Cell {
         let kind = if child.is_node() {
             CellKind::Inner
         } else {
-            let lanes = self.blocks[child.blocks()].iter().map(|block| block.lanes().count_ones());
-            CellKind::Leaf { prims: lanes.sum() }
+            let blocks = self.blocks_from(child.place()).take(child.blocks() as usize);
+            CellKind::Leaf { prims: blocks.map(|block| block.lanes().count_ones()).sum() }
         };
-        let id = CellId { instance: 0, node: child.id(self.nodes.len()) };
+        let id = CellId { instance: 0, node: child.place() };
         Cell { id, depth, shape: Shape::Box(bounds), split: None, kind }
     }
 }
@@ -163,7 +161,7 @@ impl<T: TriTest, B: Pack> Cells for Tree<T, B> {
         if cell.is_leaf() {
             return;
         }
-        let Some(node) = self.nodes.get(cell.id.node as usize) else { return };
+        let node = Node::at(&self.units, cell.id.node);
         for (slot, child) in node.children().iter().enumerate().filter(|(_, child)| **child != Child::NONE) {
             if each(self.cell(*child, node.bounds(slot), cell.depth + 1)).is_break() {
                 return;
@@ -172,9 +170,14 @@ impl<T: TriTest, B: Pack> Cells for Tree<T, B> {
     }
 
     fn prims(&self, cell: &Cell, each: &mut dyn FnMut(PrimRef)) {
-        let first = (cell.id.node as usize).checked_sub(self.nodes.len()).filter(|first| *first < self.blocks.len());
-        if let Some(first) = first {
-            self.prims_from(first).take(cell.prims() as usize).for_each(each);
+        // As many blocks as hold them all.
+        let mut left = cell.prims();
+        let mut blocks = self.blocks_from(cell.id.node);
+        while left > 0
+            && let Some(block) = blocks.next()
+        {
+            bits(block.lanes()).for_each(|lane| each(block.prim(lane)));
+            left -= block.lanes().count_ones();
         }
     }
 
@@ -187,9 +190,8 @@ impl<T: TriTest, B: Pack> Cells for Tree<T, B> {
     }
 
     fn memory(&self) -> Vec<MemoryPart> {
-        vec![
-            MemoryPart { name: "nodes", bytes: size_of_val(&self.nodes[..]) as u64 },
-            MemoryPart { name: "packed triangles", bytes: size_of_val(&self.blocks[..]) as u64 },
-        ]
+        let nodes = self.nodes * size_of::<Node>();
+        let triangles = size_of_val(&self.units[..]) - nodes;
+        vec![MemoryPart { name: "nodes", bytes: nodes as u64 }, MemoryPart { name: "packed triangles", bytes: triangles as u64 }]
     }
 }

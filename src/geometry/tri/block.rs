@@ -60,8 +60,8 @@ impl<F: Copy> Points<F> {
 }
 
 /// Corners by corner, axis and lane.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(32))]
 pub struct Block {
     /// `corners[corner][axis][lane]`.
     corners: [[Lanes; 3]; 3],
