@@ -16,9 +16,9 @@ use crate::accel;
 use crate::accel::probe::Counts;
 use crate::task::{Cancel, Cancelled, Pool};
 
-/// The time in which the first, coarse pass should be there; the rest of 50 ms is for the pass being
-/// slower than foreseen, as the first rays through a cold structure foresee little.
-pub const FIRST_PASS_SECS: f64 = 0.024;
+/// The time in which the first, coarse pass should be there, so that a frame can hold on for it. It may
+/// well take twice as long: the first rays through a cold structure foresee little.
+pub const FIRST_PASS_SECS: f64 = 0.012;
 /// The coarsest pass: one pixel for this many on each axis.
 const COARSEST: u32 = 64;
 /// What a pixel is thought to take besides its ray before anything was learnt, in seconds.

@@ -47,7 +47,7 @@ impl Graphics {
     /// without it would show an old view and keep the new one waiting. A GPU draws the next frame at once.
     pub const fn patience(self) -> Duration {
         match self {
-            Self::Software => Duration::from_millis(16),
+            Self::Software => Duration::from_millis(24),
             Self::Gpu | Self::None => Duration::ZERO,
         }
     }

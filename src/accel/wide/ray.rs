@@ -171,6 +171,8 @@ impl<'a, T: TriTest> Walk<'a, T> {
             let lane = self.met.trailing_zeros() as usize % LANES;
             self.met &= self.met - 1;
             if self.best.test(&self.test, &block.triangle(lane), block.prim(lane), query, probe) {
+                // Nothing is left to do.
+                (self.top, self.met) = (0, 0);
                 return true;
             }
         }

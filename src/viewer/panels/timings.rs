@@ -65,7 +65,7 @@ fn table(ui: &mut Ui, state: &State) {
     let mut table = TableBuilder::new(ui).striped(true).vscroll(true).cell_layout(Layout::right_to_left(Align::Center));
     table = table.column(Column::exact(28.0 * theme::GRID));
     for _ in COLUMNS {
-        table = table.column(Column::remainder().at_least(21.0 * theme::GRID));
+        table = table.column(Column::remainder().at_least(20.0 * theme::GRID));
     }
     table
         .header(theme::ROW, |mut header| {
