@@ -15,7 +15,8 @@ fn quiet() -> Window {
 
 #[test]
 fn measuring_fills_every_row_and_says_of_which_view() {
-    let mut w = quiet();
+    // Wide enough for every column.
+    let mut w = Window::new(Setup { alone: true, size: vec2(1400.0, 720.0), ..Setup::default() }).settled();
     w.button("Measure");
     assert!(w.state().measuring.is_some());
     let view = (w.state().camera, w.state().size_px);
@@ -47,9 +48,8 @@ fn measuring_fills_every_row_and_says_of_which_view() {
     assert!(raster.rounds >= 5 && raster.covered >= raster.hits && raster.differing.other == 0, "{raster:?}");
     // Every cell of the table is filled, but for what only structures have.
     assert!(w.says("Raster"));
-    let missing: Vec<_> = w.texts().into_iter().filter(|t| t.text == "–").map(|t| t.rect.center()).collect();
-    let raster = w.texts().into_iter().find(|t| t.text == "Raster").expect("in view").rect.center();
-    assert_eq!(missing.len(), 4, "{missing:?} beside {raster:?}");
+    let missing = w.texts().iter().filter(|t| t.text == "–").count();
+    assert_eq!(missing, 4);
 }
 
 #[test]
