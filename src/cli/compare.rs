@@ -142,10 +142,8 @@ impl Race<'_> {
         let finder = self.finder()?;
         let (mut sets, mut drawn) = (Vec::new(), None);
         for kind in &self.args.kinds() {
-            let (set, memory) = {
-                let shape = (self.args.size, self.args.order);
-                rays::ordered(*kind, self.model, self.camera, Arc::clone(&finder), shape, self.cx)?
-            };
+            let shape = (self.args.size, self.args.order);
+            let (set, memory) = rays::ordered(*kind, self.model, self.camera, Arc::clone(&finder), shape, self.cx)?;
             let timings = if self.raster && *kind == RayKind::Primary {
                 let (timings, row) = self.with_raster(&set, &finder)?;
                 drawn = Some(row);

@@ -166,6 +166,8 @@ impl Packer<'_> {
                 remedy: "Use a smaller model.",
             });
         }
+        // The parts exist twice while they are put together.
+        let _twice = self.cx.budget.charge((units * unit::BYTES) as u64).map_err(too_large)?;
         let mut all = list_in_large_pages(units);
         all.append(&mut whole.units);
         whole.units = all;

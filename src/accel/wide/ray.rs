@@ -52,22 +52,30 @@ pub struct Walk<'a, T> {
 }
 
 impl<'a, T: TriTest> Walk<'a, T> {
+    /// A ray of the scaled space that begins at the root.
+    #[inline(always)]
+    pub fn new(ray: &Ray, geometry: &Geometry, root: Child, open: &'a mut Open) -> Self {
+        let test = T::prepare(ray, geometry.bounds());
+        let (sides, best) = (RayIn::new(test.slabs().sides()), Best::new(ray.tmin, ray.tmax));
+        (open.children[0], open.entries[0]) = (root, ray.tmin);
+        Self { test, ray: sides, best, top: 1, met: 0, met_block: 0, open }
+    }
+
     /// No ray yet.
     #[inline(always)]
     pub fn idle(geometry: &Geometry, open: &'a mut Open) -> Self {
-        let test = T::prepare(&Ray::new(Vec3::ZERO, Vec3::X), geometry.bounds());
-        Self { test, ray: RayIn::new(test.slabs().sides()), best: Best::new(0.0, 0.0), top: 0, met: 0, met_block: 0, open }
+        let nowhere = Ray::new(Vec3::ZERO, Vec3::X);
+        Self { top: 0, ..Self::new(&nowhere, geometry, Child::NONE, open) }
     }
 
-    /// A ray of the scaled space begins at the root.
+    /// The next ray of the scaled space takes the place of one that is done.
     #[inline(always)]
     pub fn begin(&mut self, ray: &Ray, geometry: &Geometry, root: Child) {
         let test = T::prepare(ray, geometry.bounds());
         self.ray = RayIn::new(test.slabs().sides());
         self.test = test;
         self.best = Best::new(ray.tmin, ray.tmax);
-        self.top = 1;
-        self.met = 0;
+        (self.top, self.met) = (1, 0);
         (self.open.children[0], self.open.entries[0]) = (root, ray.tmin);
     }
 

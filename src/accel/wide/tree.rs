@@ -55,8 +55,7 @@ impl<T: TriTest, B: Pack> Tree<T, B> {
         if self.root == Child::NONE {
             return None;
         }
-        let mut walk = Walk::<T>::idle(&self.geometry, open);
-        walk.begin(ray, &self.geometry, self.root);
+        let mut walk = Walk::<T>::new(ray, &self.geometry, self.root, open);
         while walk.step::<S, B, Q, P>(s, &self.units, query, probe) {}
         walk.found()
     }
@@ -124,13 +123,8 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        if self.root == Child::NONE {
-            hits.fill(None);
-            let invalid = rays.iter().filter(|ray| !ray.is_valid()).count() as u64;
-            return Ok(Traced { invalid });
-        }
-        // One ray has nobody to take turns with.
-        if rays.len() == 1 {
+        // One ray has nobody to take turns with, and in an empty scene there is nothing to wait for.
+        if rays.len() == 1 || self.root == Child::NONE {
             return one_by_one(&self.geometry, rays, hits, cancel, |ray| self.trace_one(ray, query, &mut Off));
         }
         with_open(TURNS.min(rays.len()), |open| self.road.run(Batch { tree: self, rays, query, hits, cancel, open }))
