@@ -13,13 +13,19 @@ pub struct Best {
     tmin: f32,
 }
 
-const NONE: PrimRef = PrimRef::MAX;
+/// The triangle of no hit.
+pub const NONE: PrimRef = PrimRef::MAX;
 
 impl Best {
     /// Nothing found yet in `[tmin, tmax]`.
     #[inline(always)]
     pub const fn new(tmin: f32, tmax: f32) -> Self {
         Self { hit: PrimHit { t: tmax, u: 0.0, v: 0.0, prim: NONE }, tmin }
+    }
+
+    /// A hit found before; its t is that of the ray's end if it is none (see [`NONE`]).
+    pub const fn with(tmin: f32, hit: PrimHit) -> Self {
+        Self { hit, tmin }
     }
 
     /// Nothing beyond this t is of interest.
@@ -61,8 +67,14 @@ impl Best {
         let hit = ray.hit(tri, self.tmin, self.hit.t);
         probe.tested(prim, hit.map(|hit| hit.t));
         let Some(hit) = hit else { return false };
-        let hit = PrimHit { t: hit.t, u: hit.u, v: hit.v, prim };
-        let closer = hit.t < self.hit.t || prim < self.hit.prim;
+        self.offer(PrimHit { t: hit.t, u: hit.u, v: hit.v, prim }, query)
+    }
+
+    /// Keeps a hit in the ray's interval if it is closer, or as close with a lower index. True if the
+    /// search is over.
+    #[inline(always)]
+    pub fn offer<Q: Query>(&mut self, hit: PrimHit, query: &Q) -> bool {
+        let closer = hit.t < self.hit.t || (hit.t == self.hit.t && hit.prim < self.hit.prim);
         if closer && query.accept(&hit) {
             self.hit = hit;
             return query.any();

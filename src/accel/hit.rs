@@ -41,6 +41,9 @@ pub enum Mode {
 
 /// The question as a type, so that each answer has a loop of its own.
 pub trait Query: Copy + Sync {
+    /// Whether every hit counts.
+    const ACCEPTS_ALL: bool = false;
+
     /// Whether the first hit found will do.
     fn any(&self) -> bool;
 
@@ -57,6 +60,8 @@ pub trait Query: Copy + Sync {
 pub struct Closest;
 
 impl Query for Closest {
+    const ACCEPTS_ALL: bool = true;
+
     #[inline(always)]
     fn any(&self) -> bool {
         false
@@ -68,6 +73,8 @@ impl Query for Closest {
 pub struct AnyHit;
 
 impl Query for AnyHit {
+    const ACCEPTS_ALL: bool = true;
+
     #[inline(always)]
     fn any(&self) -> bool {
         true

@@ -91,6 +91,8 @@ const RAYS_PER_CHECK: usize = 64;
 pub struct Traced {
     /// Rays that are not valid (see [`Ray::is_valid`]): they miss.
     pub invalid: u64,
+    /// Rays that were traced with neighbours as one.
+    pub in_beams: u64,
 }
 
 /// A built structure, whatever its kind.
@@ -217,6 +219,6 @@ fn in_scaled_space(
     }
     Ok(trace(&entered.ray)?.map(|hit| {
         let (instance, primitive) = geometry.locate(hit.prim);
-        Hit { t: entered.world_t(hit.t), u: hit.u, v: hit.v, instance, primitive }
+        Hit { t: entered.back.world_t(hit.t), u: hit.u, v: hit.v, instance, primitive }
     }))
 }

@@ -13,8 +13,10 @@
 //! rounded difference, three roundings of the shear, the final difference); `o + e` is itself
 //! rounded by u|o|. `e = 12uD + 2u|o|` covers them all with room for the second-order terms.
 
+use super::eight::{Points, Rays};
 use super::num::UNIT_ROUNDOFF;
 use super::{Aabb, Ray};
+use crate::simd::Simd;
 use glam::{Vec3, Vec3A};
 
 /// What box tests need of a ray, worked out once.
@@ -28,20 +30,24 @@ pub struct Slabs {
     inv: Vec3A,
 }
 
-/// The same by axis, for tests of many boxes: the nearer plane of an axis is met at
-/// `(near - plane) * minus_inv`, the farther one at `(far - plane) * minus_inv`, which are to the bit the
-/// lesser and the greater of what [`Slabs::interval`] compares.
+/// The same for eight rays side by side.
 #[derive(Clone, Copy, Debug)]
-pub struct Sides {
-    /// One bit for each axis on which the ray runs towards smaller values, and meets the greatest plane
-    /// first.
-    pub backward: u32,
-    /// From what to subtract the nearer plane.
-    pub near: Vec3A,
-    /// From what to subtract the farther plane.
-    pub far: Vec3A,
-    /// Minus one over the direction, finite and not zero.
-    pub minus_inv: Vec3A,
+pub struct EightSlabs<F> {
+    /// As in [`Slabs`].
+    pub o_lo: Points<F>,
+    /// As in [`Slabs`].
+    pub o_hi: Points<F>,
+    /// As in [`Slabs`].
+    pub inv: Points<F>,
+}
+
+/// Eight boxes side by side.
+#[derive(Clone, Copy)]
+pub struct Boxes<F> {
+    /// The least corners.
+    pub min: Points<F>,
+    /// The greatest.
+    pub max: Points<F>,
 }
 
 /// Directions below this (of a ray whose greatest component is about 1) count as parallel.
@@ -103,17 +109,79 @@ impl Slabs {
         self.inv[axis] < 0.0
     }
 
-    /// Sorted by which plane of an axis the ray meets first.
+    /// One bit for each axis on which the ray does not run towards smaller values.
     #[inline(always)]
-    pub fn sides(&self) -> Sides {
-        let backward = self.inv.cmplt(Vec3A::ZERO);
-        Sides {
-            backward: backward.bitmask(),
-            near: Vec3A::select(backward, self.o_hi, self.o_lo),
-            far: Vec3A::select(backward, self.o_lo, self.o_hi),
-            minus_inv: -self.inv,
+    pub fn forward(&self) -> u32 {
+        !self.inv.cmplt(Vec3A::ZERO).bitmask() & 7
+    }
+
+    /// `o + e`, `o - e` and one over the direction, by axis.
+    pub fn parts(&self) -> [[f32; 3]; 3] {
+        [self.o_lo.into(), self.o_hi.into(), self.inv.into()]
+    }
+
+    /// Of such parts.
+    #[inline(always)]
+    pub fn from_parts(o_lo: [f32; 3], o_hi: [f32; 3], inv: [f32; 3]) -> Self {
+        Self { o_lo: o_lo.into(), o_hi: o_hi.into(), inv: inv.into() }
+    }
+
+    /// With the axes in another order.
+    #[inline(always)]
+    pub fn in_order(&self, axes: [usize; 3]) -> Self {
+        let pick = |v: &Vec3A| Vec3A::new(v[axes[0]], v[axes[1]], v[axes[2]]);
+        Self { o_lo: pick(&self.o_lo), o_hi: pick(&self.o_hi), inv: pick(&self.inv) }
+    }
+}
+
+impl<F: Copy> EightSlabs<F> {
+    /// As [`Slabs::new`] for each ray.
+    #[inline(always)]
+    pub fn new<S: Simd<F = F>>(s: S, rays: &Rays<F>, bounds: &Aabb) -> Self {
+        let (origin, dir) = (rays.origin, rays.dir);
+        let (min, max) = (Points::splat(s, bounds.min), Points::splat(s, bounds.max));
+        let reach = max.minus(s, origin).abs(s).max(s, min.minus(s, origin).abs(s)).greatest(s);
+        let pad = Points::all(s.mul(s.splat(12.0 * UNIT_ROUNDOFF), reach));
+        let pad = pad.plus(s, origin.abs(s).times(s, s.splat(2.0 * UNIT_ROUNDOFF)));
+        let pad = pad.max(s, Points::all(s.splat(LEAST_PAD)));
+        let inv = Points { x: inverse(s, dir.x), y: inverse(s, dir.y), z: inverse(s, dir.z) };
+        Self { o_lo: origin.plus(s, pad), o_hi: origin.minus(s, pad), inv }
+    }
+
+    /// The slabs of one ray in all lanes.
+    #[inline(always)]
+    pub fn splat<S: Simd<F = F>>(s: S, slabs: &Slabs) -> Self {
+        Self {
+            o_lo: Points::splat(s, slabs.o_lo.into()),
+            o_hi: Points::splat(s, slabs.o_hi.into()),
+            inv: Points::splat(s, slabs.inv.into()),
         }
     }
+
+    /// The t at which each ray enters and leaves the box of its lane, as in [`Slabs::interval`].
+    #[inline(always)]
+    pub fn intervals<S: Simd<F = F>>(&self, s: S, boxes: &Boxes<F>) -> (F, F) {
+        let lo = boxes.min.minus(s, self.o_lo).scaled(s, self.inv);
+        let hi = boxes.max.minus(s, self.o_hi).scaled(s, self.inv);
+        (lo.min(s, hi).greatest(s), lo.max(s, hi).least(s))
+    }
+
+    /// As [`Slabs::forward`] for each ray, as the bits of floats.
+    #[inline(always)]
+    pub fn forward<S: Simd<F = F>>(&self, s: S) -> F {
+        let zero = s.splat(0.0);
+        let x = s.select(s.lt(self.inv.x, zero), zero, s.splat_bits(1));
+        let y = s.select(s.lt(self.inv.y, zero), zero, s.splat_bits(2));
+        let z = s.select(s.lt(self.inv.z, zero), zero, s.splat_bits(4));
+        s.add_bits(s.add_bits(x, y), z)
+    }
+}
+
+/// One over a component of a direction, finite and not zero.
+#[inline(always)]
+fn inverse<S: Simd>(s: S, dir: S::F) -> S::F {
+    let parallel = s.lt(s.abs(dir), s.splat(PARALLEL));
+    s.select(parallel, s.splat(PARALLEL_INV), s.div(s.splat(1.0), dir))
 }
 
 #[inline(always)]

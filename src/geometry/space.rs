@@ -10,8 +10,10 @@
 //!    new origin, is below the triangle tests' own error; without it their error would grow with
 //!    the distance. All structures get the same moved ray, so they still agree to the bit.
 
+use super::eight::{Points, Rays};
 use super::num::narrow;
 use super::{Aabb, Ray};
+use crate::simd::Simd;
 use glam::{DVec3, Vec3};
 
 /// Beyond this many extents from the scene's box an origin is moved closer.
@@ -35,23 +37,36 @@ pub struct Space {
 pub struct Entered {
     /// The ray as the structures see it.
     pub ray: Ray,
-    t_offset: f64,
-    t_scale: f64,
+    /// The way back.
+    pub back: Back,
 }
 
-impl Entered {
-    /// No ray.
-    pub const NOWHERE: Self = Self { ray: Ray::new(Vec3::ZERO, Vec3::X), t_offset: 0.0, t_scale: 1.0 };
+/// What turns a t of the scaled space into the world's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Back {
+    offset: f64,
+    scale: f64,
+}
 
-    /// The world's t of a t of [`Self::ray`].
-    #[inline]
-    pub fn world_t(&self, t: f32) -> f32 {
-        narrow((f64::from(t) + self.t_offset) * self.t_scale)
+impl Back {
+    /// Of a ray that is the world's own.
+    pub const NONE: Self = Self { offset: 0.0, scale: 1.0 };
+
+    /// Of a ray that was scaled and not moved, by the product of what its t is multiplied by.
+    #[inline(always)]
+    pub fn scaled(scale: f32) -> Self {
+        Self { offset: 0.0, scale: scale.into() }
     }
 
-    /// The t of [`Self::ray`] of a world's t.
+    /// The world's t of a t of the scaled ray.
+    #[inline(always)]
+    pub fn world_t(&self, t: f32) -> f32 {
+        narrow((f64::from(t) + self.offset) * self.scale)
+    }
+
+    /// The t of the scaled ray of a world's t.
     pub fn scaled_t(&self, t: f32) -> f32 {
-        narrow(f64::from(t) / self.t_scale - self.t_offset)
+        narrow(f64::from(t) / self.scale - self.offset)
     }
 }
 
@@ -109,10 +124,35 @@ impl Space {
             let t_unscale = down * scale;
             if self.is_near(origin) && (MIN..=MAX).contains(&t_unscale) {
                 let ray = Ray { origin, dir: ray.dir * up, tmin: ray.tmin * t_unscale, tmax: ray.tmax * t_unscale };
-                return Entered { ray, t_offset: 0.0, t_scale: f64::from(up) * f64::from(unscale) };
+                return Entered { ray, back: Back { offset: 0.0, scale: f64::from(up) * f64::from(unscale) } };
             }
         }
         self.enter_from_afar(ray, up)
+    }
+
+    /// Eight valid rays at once, and what turns each t back into the world's; nothing if one of those in
+    /// `lanes` has to go the long way.
+    #[inline(always)]
+    pub fn enter_eight<S: Simd>(&self, s: S, rays: &Rays<S::F>, lanes: u32) -> Option<(Rays<S::F>, S::F)> {
+        let (scale, unscale) = self.narrow?;
+        let (scale, unscale) = (s.splat(scale), s.splat(unscale));
+        let (least, most) = (s.splat(MIN), s.splat(MAX));
+        // The power of two from which the longest component is at most 1, as `to_at_most_one`: the exponent
+        // of its bits, rounded up.
+        let longest = rays.dir.abs(s).greatest(s);
+        let down = s.and_bits(s.add_bits(longest, s.splat_bits((1 << 23) - 1)), s.splat_bits(0xFF << 23));
+        let up = s.sub_bits(s.splat_bits(254 << 23), down);
+        let (origin, t_unscale, t_scale) = (rays.origin.times(s, scale), s.mul(down, scale), s.mul(up, unscale));
+        let (min, max) = (Points::splat(s, self.surroundings.min), Points::splat(s, self.surroundings.max));
+        let near = s.and(min.at_most(s, origin), origin.at_most(s, max));
+        let usual = s.and(s.and(s.le(least, longest), s.le(longest, most)), s.and(s.le(least, t_unscale), s.le(t_unscale, most)));
+        let usual = s.and(usual, near);
+        if lanes & !s.bits(usual) != 0 {
+            return None;
+        }
+        let rays =
+            Rays { origin, dir: rays.dir.times(s, up), tmin: s.mul(rays.tmin, t_unscale), tmax: s.mul(rays.tmax, t_unscale) };
+        Some((rays, t_scale))
     }
 
     /// The same for any origin and any scale.
@@ -120,14 +160,14 @@ impl Space {
     fn enter_from_afar(&self, ray: &Ray, up: PowerOfTwo) -> Entered {
         let origin = ray.origin.as_dvec3() * self.scale;
         let dir = ray.dir.as_dvec3() * up.value;
-        // world t = t of this space * t_scale: lengths grow by `scale`, the direction by `up`.
-        let t_scale = up.value / self.scale;
+        // world t = t of this space * scale: lengths grow by `scale`, the direction by `up`.
+        let scale = up.value / self.scale;
         let near = self.is_near(origin.as_vec3());
-        let t_offset = if near { 0.0 } else { self.approach(origin, dir) };
-        let moved = if t_offset > 0.0 { origin + dir * t_offset } else { origin };
-        let t = |world: f32| narrow(f64::from(world) / t_scale - t_offset);
-        let tmin = t(ray.tmin).max(0.0);
-        Entered { ray: Ray { origin: moved.as_vec3(), dir: dir.as_vec3(), tmin, tmax: t(ray.tmax) }, t_offset, t_scale }
+        let offset = if near { 0.0 } else { self.approach(origin, dir) };
+        let moved = if offset > 0.0 { origin + dir * offset } else { origin };
+        let back = Back { offset, scale };
+        let (tmin, tmax) = (back.scaled_t(ray.tmin).max(0.0), back.scaled_t(ray.tmax));
+        Entered { ray: Ray { origin: moved.as_vec3(), dir: dir.as_vec3(), tmin, tmax }, back }
     }
 
     /// Whether an origin is within [`FAR`] extents of the box.
@@ -203,7 +243,7 @@ mod tests {
             let scaled = Space::new(&Aabb { min: bounds.min * s, max: bounds.max * s });
             let there = scaled.enter(&Ray { origin: ray.origin * s, dir: ray.dir * s, ..ray });
             assert_eq!(here.ray, there.ray);
-            assert_eq!(here.world_t(0.7), there.world_t(0.7));
+            assert_eq!(here.back.world_t(0.7), there.back.world_t(0.7));
         }
     }
 
@@ -213,7 +253,7 @@ mod tests {
         let entered = space.enter(&Ray::new(Vec3::new(1e6, 0.25, 0.0), Vec3::NEG_X));
         assert!(entered.ray.origin.length() < FAR as f32);
         let t = entered.ray.origin.x - 0.5; // to the plane x = 1, at 0.5 once scaled
-        assert_eq!(entered.world_t(t), 1e6 - 1.0);
+        assert_eq!(entered.back.world_t(t), 1e6 - 1.0);
         assert_eq!(entered.ray.origin.y, 0.125);
     }
 
@@ -239,7 +279,7 @@ mod tests {
                 for origin in [Vec3::new(1.0, 1.2, 22.0), Vec3::new(-1e-3, 60.0, 1e-41)] {
                     let ray = Ray { origin: origin * s, dir, tmin: tmin * s, tmax: tmax * s };
                     let (short, long) = (space.enter(&ray), space.enter_from_afar(&ray, to_at_most_one(dir.abs().max_element())));
-                    assert_eq!((short.ray, short.t_offset, short.t_scale), (long.ray, long.t_offset, long.t_scale), "{ray:?}");
+                    assert_eq!((short.ray, short.back), (long.ray, long.back), "{ray:?}");
                 }
             }
         }

@@ -21,6 +21,7 @@ pub struct Geometry {
     live: Live,
     /// The first triangle of each instance, and one past the last: ascending.
     first_prim: Vec<u32>,
+    places: Places,
     dropped: u32,
     degenerate: u32,
     _memory: Charge,
@@ -57,11 +58,13 @@ impl Geometry {
             triangles: Vec::with_capacity(num::floor_index(triangles as f64, num::MAX_INDEX)),
             live: Live::All,
             first_prim: vec![0],
+            places: Places::default(),
             dropped: 0,
             degenerate: 0,
             _memory: memory,
         };
         flat.gather(scene, cx)?;
+        flat.places = Places::new(&flat.first_prim);
         flat.classify_and_scale(cx)?;
         Ok(flat)
     }
@@ -192,9 +195,13 @@ impl Geometry {
     /// The instance that a triangle belongs to, and its index within the instance's mesh.
     #[inline]
     pub fn locate(&self, prim: PrimRef) -> (u32, u32) {
-        // Most flattened scenes hold one mesh: then there is nothing to look for.
-        let instance = if self.first_prim.len() <= 2 { 0 } else { self.first_prim.partition_point(|first| *first <= prim) - 1 };
-        (num::index(instance), prim - self.first_prim[instance])
+        self.whose().locate(prim)
+    }
+
+    /// What tells whose triangles are whose.
+    #[inline(always)]
+    pub fn whose(&self) -> Whose<'_> {
+        Whose { first_prim: &self.first_prim, shift: self.places.shift, instance: &self.places.instance }
     }
 
     /// The flattened index of a triangle of an instance.
@@ -208,7 +215,46 @@ impl Geometry {
             Live::All => 0,
             Live::Some(list) => list.len() * 4,
         };
-        (self.positions.len() * 12 + self.triangles.len() * 12 + live + self.first_prim.len() * 4) as u64
+        (self.positions.len() * 12 + self.triangles.len() * 12 + live + (self.first_prim.len() + self.places.instance.len()) * 4)
+            as u64
+    }
+}
+
+/// Tells the instance of many triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct Whose<'a> {
+    first_prim: &'a [u32],
+    shift: u32,
+    instance: &'a [u32],
+}
+
+impl Whose<'_> {
+    /// As [`Geometry::locate`].
+    #[inline(always)]
+    pub fn locate(&self, prim: PrimRef) -> (u32, u32) {
+        let mut instance = self.instance[(prim >> (self.shift & 31)) as usize];
+        while self.first_prim[instance as usize + 1] <= prim {
+            instance += 1;
+        }
+        (instance, prim - self.first_prim[instance as usize])
+    }
+}
+
+/// Where to begin the search for the instance of a triangle: for each run of `2^shift` triangles the
+/// instance of the first.
+#[derive(Debug, Default)]
+struct Places {
+    shift: u32,
+    instance: Vec<u32>,
+}
+
+impl Places {
+    /// About as many runs as instances.
+    fn new(first_prim: &[u32]) -> Self {
+        let (prims, instances) = (first_prim.last().copied().unwrap_or(0), first_prim.len() as u32);
+        let shift = (prims / instances).max(1).ilog2();
+        let run = |i: u32| first_prim.partition_point(|first| *first <= i << shift) - 1;
+        Self { shift, instance: (0..=prims >> shift).map(|i| num::index(run(i))).collect() }
     }
 }
 

@@ -18,7 +18,7 @@ pub use camera::{Camera, Frame, Projection};
 pub use camera_spec::CameraSpec;
 pub use error::{LoadError, Reason};
 pub use first_view::{FirstView, StoredCamera};
-pub use geometry::{Geometry, PrimRef};
+pub use geometry::{Geometry, PrimRef, Whose};
 pub use material::Material;
 pub use mesh::{Instance, Mesh};
 pub use source::{LoadCx, open};

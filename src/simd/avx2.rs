@@ -71,6 +71,30 @@ impl Simd for Avx2 {
     }
 
     #[inline(always)]
+    fn splat_bits(self, x: u32) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_castsi256_ps(_mm256_set1_epi32(x.cast_signed())) }
+    }
+
+    #[inline(always)]
+    fn add_bits(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_castsi256_ps(_mm256_add_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))) }
+    }
+
+    #[inline(always)]
+    fn sub_bits(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_castsi256_ps(_mm256_sub_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))) }
+    }
+
+    #[inline(always)]
+    fn and_bits(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_and_ps(a, b) }
+    }
+
+    #[inline(always)]
     fn load_bytes(self, from: &[u8; LANES]) -> __m256 {
         // SAFETY: the reference is to the 8 bytes that are loaded.
         unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()))) }
@@ -110,6 +134,12 @@ impl Simd for Avx2 {
     fn max(self, a: __m256, b: __m256) -> __m256 {
         // SAFETY: as in `run`.
         unsafe { _mm256_max_ps(a, b) }
+    }
+
+    #[inline(always)]
+    fn select(self, m: __m256, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_blendv_ps(b, a, m) }
     }
 
     #[inline(always)]
@@ -164,6 +194,31 @@ impl Simd for Avx2 {
     fn permute(self, x: __m256, i: __m256i) -> __m256 {
         // SAFETY: as in `run`.
         unsafe { _mm256_permutevar8x32_ps(x, i) }
+    }
+
+    #[inline(always)]
+    fn transpose(self, [a, b, c, d, e, f, g, h]: [__m256; LANES]) -> [__m256; LANES] {
+        // SAFETY: as in `run`.
+        unsafe {
+            let (ab, ab2) = (_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
+            let (cd, cd2) = (_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d));
+            let (ef, ef2) = (_mm256_unpacklo_ps(e, f), _mm256_unpackhi_ps(e, f));
+            let (gh, gh2) = (_mm256_unpacklo_ps(g, h), _mm256_unpackhi_ps(g, h));
+            let (a0, a1) = (_mm256_shuffle_ps::<0x44>(ab, cd), _mm256_shuffle_ps::<0xEE>(ab, cd));
+            let (a2, a3) = (_mm256_shuffle_ps::<0x44>(ab2, cd2), _mm256_shuffle_ps::<0xEE>(ab2, cd2));
+            let (e0, e1) = (_mm256_shuffle_ps::<0x44>(ef, gh), _mm256_shuffle_ps::<0xEE>(ef, gh));
+            let (e2, e3) = (_mm256_shuffle_ps::<0x44>(ef2, gh2), _mm256_shuffle_ps::<0xEE>(ef2, gh2));
+            [
+                _mm256_permute2f128_ps::<0x20>(a0, e0),
+                _mm256_permute2f128_ps::<0x20>(a1, e1),
+                _mm256_permute2f128_ps::<0x20>(a2, e2),
+                _mm256_permute2f128_ps::<0x20>(a3, e3),
+                _mm256_permute2f128_ps::<0x31>(a0, e0),
+                _mm256_permute2f128_ps::<0x31>(a1, e1),
+                _mm256_permute2f128_ps::<0x31>(a2, e2),
+                _mm256_permute2f128_ps::<0x31>(a3, e3),
+            ]
+        }
     }
 
     #[inline(always)]

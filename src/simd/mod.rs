@@ -56,6 +56,14 @@ pub trait Simd: Copy + Send + Sync + 'static {
     fn load_bits(self, from: &[u32; LANES]) -> Self::F;
     /// The same back.
     fn store_bits(self, x: Self::F, to: &mut [u32; LANES]);
+    /// The same integer in all lanes, as floats of the same bits.
+    fn splat_bits(self, x: u32) -> Self::F;
+    /// The sum of the bits as integers, which may wrap.
+    fn add_bits(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The difference of the bits as integers, which may wrap.
+    fn sub_bits(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The bits that both have.
+    fn and_bits(self, a: Self::F, b: Self::F) -> Self::F;
     /// Eight bytes as floats: 0 to 255, exact.
     fn load_bytes(self, from: &[u8; LANES]) -> Self::F;
     /// The sum.
@@ -70,6 +78,13 @@ pub trait Simd: Copy + Send + Sync + 'static {
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     /// `a > b ? a : b`.
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// Without the sign.
+    #[inline(always)]
+    fn abs(self, x: Self::F) -> Self::F {
+        self.and_bits(x, self.splat_bits(!(1 << 31)))
+    }
+    /// `m ? a : b`.
+    fn select(self, m: Self::M, a: Self::F, b: Self::F) -> Self::F;
     /// Where `a <= b`.
     fn le(self, a: Self::F, b: Self::F) -> Self::M;
     /// Where `a < b`.
@@ -89,6 +104,9 @@ pub trait Simd: Copy + Send + Sync + 'static {
     fn flip(self, i: Self::I, with: u32) -> Self::I;
     /// Lane `i[k]` of `x` in lane `k`.
     fn permute(self, x: Self::F, i: Self::I) -> Self::F;
+
+    /// Lane `k` of the eight in vector `k`.
+    fn transpose(self, rows: [Self::F; LANES]) -> [Self::F; LANES];
 
     /// Asks for a cache line that is needed soon, at any address: nothing is read.
     fn prefetch(self, address: usize);

@@ -60,6 +60,26 @@ impl Simd for Portable {
     }
 
     #[inline(always)]
+    fn splat_bits(self, x: u32) -> Lanes {
+        self.splat(f32::from_bits(x))
+    }
+
+    #[inline(always)]
+    fn add_bits(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| f32::from_bits(a[i].to_bits().wrapping_add(b[i].to_bits())))
+    }
+
+    #[inline(always)]
+    fn sub_bits(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| f32::from_bits(a[i].to_bits().wrapping_sub(b[i].to_bits())))
+    }
+
+    #[inline(always)]
+    fn and_bits(self, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| f32::from_bits(a[i].to_bits() & b[i].to_bits()))
+    }
+
+    #[inline(always)]
     fn load_bytes(self, from: &[u8; LANES]) -> Lanes {
         from.map(f32::from)
     }
@@ -92,6 +112,11 @@ impl Simd for Portable {
     #[inline(always)]
     fn max(self, a: Lanes, b: Lanes) -> Lanes {
         each(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+
+    #[inline(always)]
+    fn select(self, m: u32, a: Lanes, b: Lanes) -> Lanes {
+        each(|i| if m >> i & 1 == 1 { a[i] } else { b[i] })
     }
 
     #[inline(always)]
@@ -137,6 +162,17 @@ impl Simd for Portable {
     #[inline(always)]
     fn permute(self, x: Lanes, i: [u8; LANES]) -> Lanes {
         each(|k| x[usize::from(i[k] & 7)])
+    }
+
+    #[inline(always)]
+    fn transpose(self, rows: [Lanes; LANES]) -> [Lanes; LANES] {
+        let mut columns = [[0.0; LANES]; LANES];
+        for (i, row) in rows.iter().enumerate() {
+            for (k, x) in row.iter().enumerate() {
+                columns[k][i] = *x;
+            }
+        }
+        columns
     }
 
     #[inline(always)]

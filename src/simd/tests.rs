@@ -14,6 +14,7 @@ impl Kernel for Everything {
         let mut out = Vec::new();
         let bytes = self.0[0].map(|x| x.to_bits() as u8);
         let i = s.indices(&bytes);
+        let columns = s.transpose([a, b, a, a, b, b, a, b]);
         let results = [
             s.add(a, b),
             s.sub(a, b),
@@ -26,8 +27,14 @@ impl Kernel for Everything {
             s.permute(a, i),
             s.permute(b, s.flip(i, 5)),
             s.load_bits(&self.0[1].map(f32::to_bits)),
+            s.splat_bits(bytes[0].into()),
+            s.add_bits(a, b),
+            s.sub_bits(a, b),
+            s.and_bits(a, b),
+            s.abs(a),
+            s.select(s.lt(a, b), a, b),
         ];
-        for result in results {
+        for result in results.into_iter().chain(columns) {
             let (mut floats, mut bits) = ([0.0; LANES], [0; LANES]);
             s.store(result, &mut floats);
             s.store_bits(result, &mut bits);

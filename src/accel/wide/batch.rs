@@ -1,26 +1,34 @@
-//! Many rays on one core, taking turns: while one waits for memory the others go on.
+//! Many rays on one core at a time.
 //!
-//! Each step ends with a prefetch of what the ray needs next, and then it is the next ray's turn. So
-//! the latency of a node in far memory is shared by all rays on their way, and the processor always
-//! has several that do not depend on each other.
+//! Rays wait in lists by what they do next: enter a node, look at a block of triangles, settle what was
+//! found there. Each list is worked off by a loop of its own, in which no branch depends on what a ray
+//! meets: which list a ray joins next is arithmetic. So the processor overlaps the steps of many
+//! rays, foresees every branch, and what a ray needs next, asked for when it joins its list, is there when
+//! its turn comes.
 
 use std::cell::RefCell;
 
+use super::beam::Beam;
+use super::child::Child;
 use super::leaf::Pack;
-use super::ray::{Open, Walk};
+use super::node::{Met, Node};
+use super::open::Open;
 use super::tree::Tree;
+use super::way::{Rest, Way};
 use crate::accel::probe::Off;
 use crate::accel::{Hit, Query, Traced};
-use crate::geometry::Ray;
-use crate::geometry::space::Entered;
-use crate::geometry::tri::TriTest;
-use crate::simd::{Kernel, Simd};
+use crate::geometry::tri::{TriTest, corners, splat_own};
+use crate::geometry::{EightSlabs, Ray};
+use crate::simd::{Kernel, LANES, Simd};
 use crate::task::{Cancel, Cancelled};
 
-/// Rays on their way at a time.
-pub const TURNS: usize = 16;
-/// Rays that are begun between two looks at the cancel flag.
-const RAYS_PER_CHECK: usize = 256;
+/// Rays on their way at a time: what they need fits the first level of the cache together with what they
+/// are about to visit.
+const RAYS: usize = 32;
+/// Beams on their way at a time.
+const BEAMS: usize = 8;
+/// Rounds between two looks at the cancel flag.
+const ROUNDS_PER_CHECK: usize = 64;
 
 /// World rays to be traced.
 pub struct Batch<'a, T, B, Q> {
@@ -29,36 +37,96 @@ pub struct Batch<'a, T, B, Q> {
     pub query: &'a Q,
     pub hits: &'a mut [Option<Hit>],
     pub cancel: &'a Cancel,
-    /// Of so many rays at a time, at most [`TURNS`].
-    pub open: &'a mut [Open],
+    pub under_way: &'a mut UnderWay,
 }
 
-/// A ray on its way, and where its hit goes.
-struct Turn<'a, T> {
-    walk: Walk<'a, T>,
-    entered: Entered,
-    at: usize,
-    on_its_way: bool,
+/// Rays and beams on their way.
+pub struct UnderWay {
+    ways: [Way; RAYS],
+    beams: [Beam; BEAMS],
 }
 
 thread_local! {
-    /// What rays have met and not visited yet, kept from batch to batch.
-    static OPEN: RefCell<Vec<Open>> = const { RefCell::new(Vec::new()) };
+    /// Kept from batch to batch.
+    static UNDER_WAY: RefCell<Option<Box<UnderWay>>> = const { RefCell::new(None) };
+    /// What a ray alone has met and not visited yet.
+    static OPEN: RefCell<Option<Box<Open>>> = const { RefCell::new(None) };
 }
 
-/// Lends `n` of them.
+/// Lends room for a batch.
+pub fn with_under_way<R>(work: impl FnOnce(&mut UnderWay) -> R) -> R {
+    // Taken while it is lent: a query may trace rays of its own.
+    let idle = || Box::new(UnderWay { ways: [const { Way::idle() }; RAYS], beams: [const { Beam::idle() }; BEAMS] });
+    let mut under_way = UNDER_WAY.take().unwrap_or_else(idle);
+    let result = work(&mut under_way);
+    UNDER_WAY.set(Some(under_way));
+    result
+}
+
+/// Lends room for one ray.
 #[inline(always)]
-pub fn with_open<R>(n: usize, work: impl FnOnce(&mut [Open]) -> R) -> R {
-    OPEN.with(|kept| {
-        // Taken while they are lent: a query may trace rays of its own.
-        let mut open = kept.take();
-        if open.len() < n {
-            open.resize(n, Open::new());
+pub fn with_open<R>(work: impl FnOnce(&mut Open) -> R) -> R {
+    let mut open = OPEN.take().unwrap_or_else(|| Box::new(Open::new()));
+    let result = work(&mut open);
+    OPEN.set(Some(open));
+    result
+}
+
+/// Rays, or beams, by what they do next, each with what it visits: the kinds of [`Child`], and [`SETTLE`].
+struct Lists<const N: usize> {
+    entries: [[(Child, u32); N]; 4],
+    lens: [usize; 4],
+}
+
+/// The list of rays that have found something.
+const SETTLE: usize = 1;
+
+impl<const N: usize> Lists<N> {
+    /// All are idle.
+    fn new() -> Self {
+        let idle = std::array::from_fn(|i| (Child::NONE, i as u32));
+        let mut entries = [[(Child::NONE, 0); N]; 4];
+        entries[Child::NOTHING] = idle;
+        Self { entries, lens: [0, 0, 0, N] }
+    }
+
+    /// One joins a list. There are never more of them than there is room for.
+    #[inline(always)]
+    const fn add(&mut self, list: usize, next: Child, who: usize) {
+        let list = list % 4;
+        let len = self.lens[list];
+        self.entries[list][len % N] = (next, who as u32);
+        self.lens[list] = len + 1;
+    }
+
+    #[inline(always)]
+    const fn get(&self, list: usize, i: usize) -> (Child, usize) {
+        let (child, who) = self.entries[list % 4][i % N];
+        (child, who as usize % N)
+    }
+
+    /// Empties a list that is read from now on, one entry after another, before new ones reach it: how
+    /// many there are.
+    #[inline(always)]
+    const fn take(&mut self, list: usize) -> usize {
+        std::mem::replace(&mut self.lens[list], 0)
+    }
+
+    /// The last of those that are idle.
+    #[inline(always)]
+    const fn idle(&self) -> Option<usize> {
+        match self.lens[Child::NOTHING] {
+            0 => None,
+            n => Some(self.get(Child::NOTHING, n - 1).1),
         }
-        let result = work(&mut open[..n]);
-        kept.replace(open);
-        result
-    })
+    }
+
+    /// The last of those that are idle begins.
+    #[inline(always)]
+    const fn begin(&mut self, root: Child, who: usize) {
+        self.lens[Child::NOTHING] -= 1;
+        self.add(root.kind(), root, who);
+    }
 }
 
 impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
@@ -66,72 +134,118 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
 
     #[inline(always)]
     fn run<S: Simd>(self, s: S) -> Self::Out {
-        let Self { tree, rays, query, hits, cancel, open } = self;
-        let mut rest = Rest { tree, rays, hits, cancel, next: 0, traced: Traced::default() };
-        let mut turns: Vec<Turn<'_, T>> = Vec::with_capacity(open.len());
-        let mut active = 0;
-        for open in open {
-            let mut turn = Turn { walk: Walk::idle(&tree.geometry, open), entered: Entered::NOWHERE, at: 0, on_its_way: false };
-            turn.on_its_way = rest.begin(&mut turn)?;
-            active += usize::from(turn.on_its_way);
-            turns.push(turn);
-        }
-        while active > 0 {
-            for turn in &mut turns {
-                if turn.walk.step::<S, B, Q, Off>(s, &tree.units, query, &mut Off) {
-                    tree.prefetch(s, turn.walk.next());
-                } else if turn.on_its_way {
-                    rest.end(turn);
-                    turn.on_its_way = rest.begin(turn)?;
-                    active -= usize::from(!turn.on_its_way);
+        let Self { tree, rays, query, hits, cancel, under_way: UnderWay { ways, beams } } = self;
+        let (units, whose) = (&tree.units[..], tree.geometry.whose());
+        let (mut lists, mut beam_lists) = (Lists::<RAYS>::new(), Lists::<BEAMS>::new());
+        let mut rest = Rest::new(&tree.geometry, rays);
+        let (mut entries, mut slots) = ([[0.0; LANES]; RAYS], [0; RAYS]);
+        let mut rounds = 0usize;
+        loop {
+            if rounds.is_multiple_of(ROUNDS_PER_CHECK) {
+                cancel.check()?;
+            }
+            rounds += 1;
+            // Begin.
+            loop {
+                while let Some(idle) = lists.idle()
+                    && let Some(ready) = rest.take()
+                {
+                    ways[idle].begin(ready, tree.root);
+                    lists.begin(tree.root, idle);
+                }
+                if let Some(idle) = beam_lists.idle()
+                    && rest.can_prepare()
+                {
+                    if rest.prepare::<T, S>(s, hits, &mut beams[idle], tree.root) {
+                        beam_lists.begin(tree.root, idle);
+                    }
+                } else {
+                    break;
                 }
             }
-        }
-        Ok(rest.traced)
-    }
-}
-
-/// Rays that are not begun yet.
-struct Rest<'a, T, B> {
-    tree: &'a Tree<T, B>,
-    rays: &'a [Ray],
-    hits: &'a mut [Option<Hit>],
-    cancel: &'a Cancel,
-    next: usize,
-    traced: Traced,
-}
-
-impl<T: TriTest, B: Pack> Rest<'_, T, B> {
-    /// Begins with the next ray that may hit anything; false if there is none.
-    #[inline(always)]
-    fn begin(&mut self, turn: &mut Turn<'_, T>) -> Result<bool, Cancelled> {
-        while let Some(ray) = self.rays.get(self.next) {
-            let at = self.next;
-            self.next += 1;
-            if at.is_multiple_of(RAYS_PER_CHECK) {
-                self.cancel.check()?;
+            let (idle, idle_beams) = (lists.lens[Child::NOTHING], beam_lists.lens[Child::NOTHING]);
+            if idle == RAYS && idle_beams == BEAMS {
+                return Ok(rest.traced);
             }
-            if ray.is_valid() {
-                let entered = self.tree.geometry.space().enter(ray);
-                if entered.ray.tmin <= entered.ray.tmax {
-                    turn.walk.begin(&entered.ray, &self.tree.geometry, self.tree.root);
-                    turn.entered = entered;
-                    turn.at = at;
-                    return Ok(true);
+            let nodes = lists.take(Child::NODE);
+            for i in 0..nodes {
+                let (child, ray) = lists.get(Child::NODE, i);
+                let way = &ways[ray];
+                let met = Node::at(units, child.place()).meet(s, &way.slabs(), way.best.tmin(), way.best.t());
+                s.store(met.entry, &mut entries[i % RAYS]);
+                slots[i % RAYS] = met.slots;
+            }
+            for i in 0..nodes {
+                let (child, ray) = lists.get(Child::NODE, i);
+                let way = &mut ways[ray];
+                let met = Met { slots: slots[i % RAYS], entry: s.load(&entries[i % RAYS]) };
+                way.last = way.open.replace(s, way.last, Node::at(units, child.place()), &met, way.order());
+            }
+            for i in 0..nodes {
+                let (_, ray) = lists.get(Child::NODE, i);
+                let way = &ways[ray];
+                let next = way.open.next(way.last);
+                tree.prefetch(s, next);
+                lists.add(next.kind(), next, ray);
+            }
+            for i in 0..lists.take(Child::BLOCKS) {
+                let (child, ray) = lists.get(Child::BLOCKS, i);
+                let way = &mut ways[ray];
+                let block = B::at(units, child.place());
+                let axes = way.test::<T>().axes();
+                let slabs = EightSlabs::splat(s, &way.slabs_in_order(axes));
+                let interval = [s.splat(way.best.tmin()), s.splat(way.best.t())];
+                let hits = T::hit_eight(s, &splat_own(s, &way.own()), &slabs, interval, &corners(s, block, axes));
+                way.found.keep(s, &hits, block.lanes());
+                way.block = child.place();
+                way.last = way.open.shorten(way.last, child, B::UNITS);
+                let next = way.open.next(way.last);
+                tree.prefetch(s, next);
+                let list = if way.found.any() { SETTLE } else { next.kind() };
+                lists.add(list, next, ray);
+            }
+            for i in 0..lists.take(SETTLE) {
+                let (_, ray) = lists.get(SETTLE, i);
+                let way = &mut ways[ray];
+                let block = B::at(units, way.block);
+                let before = way.best.t();
+                let test = way.test::<T>();
+                if way.found.settle(&test, block, query, &mut way.best, &mut Off) {
+                    lists.add(Child::NOTHING, Child::NONE, ray);
+                    continue;
                 }
-            } else {
-                self.traced.invalid += 1;
+                if way.best.t() < before {
+                    way.last = way.open.forget_behind(s, way.last, way.best.t(), &mut Off);
+                }
+                let next = way.open.next(way.last);
+                tree.prefetch(s, next);
+                lists.add(next.kind(), next, ray);
             }
-            self.hits[at] = None;
+            for i in idle..lists.lens[Child::NOTHING] {
+                let (_, ray) = lists.get(Child::NOTHING, i);
+                ways[ray].end(&whose, hits);
+            }
+            for i in 0..beam_lists.take(Child::NODE) {
+                let (child, who) = beam_lists.get(Child::NODE, i);
+                let beam = &mut beams[who];
+                beam.enter(s, Node::at(units, child.place()));
+                let next = beam.open.next(beam.last);
+                tree.prefetch(s, next);
+                beam_lists.add(next.kind(), next, who);
+            }
+            for i in 0..beam_lists.take(Child::BLOCKS) {
+                let (child, who) = beam_lists.get(Child::BLOCKS, i);
+                let beam = &mut beams[who];
+                beam.last = beam.open.shorten(beam.last, child, B::UNITS);
+                let more = beam.test::<S, T, B, Q>(s, B::at(units, child.place()), query);
+                let next = if more { beam.open.next(beam.last) } else { Child::NONE };
+                tree.prefetch(s, next);
+                beam_lists.add(next.kind(), next, who);
+            }
+            for i in idle_beams..beam_lists.lens[Child::NOTHING] {
+                let (_, who) = beam_lists.get(Child::NOTHING, i);
+                beams[who].end(&whose, hits);
+            }
         }
-        Ok(false)
-    }
-
-    #[inline(always)]
-    fn end(&mut self, turn: &Turn<'_, T>) {
-        self.hits[turn.at] = turn.walk.found().map(|hit| {
-            let (instance, primitive) = self.tree.geometry.locate(hit.prim);
-            Hit { t: turn.entered.world_t(hit.t), u: hit.u, v: hit.v, instance, primitive }
-        });
     }
 }

@@ -3,8 +3,9 @@
 /// Another node, the triangles of a leaf, or nothing.
 ///
 /// ```text
-/// node   0 000pppp pppppppp pppppppp pppppppp   its place, in units
-/// leaf   1 cccpppp pppppppp pppppppp pppppppp   blocks - 1, the place of the first
+/// node   00 00pppp pppppppp pppppppp pppppppp   its place, in units
+/// leaf   10 ccpppp pppppppp pppppppp pppppppp   blocks - 1, the place of the first
+/// NONE   11 111111 11111111 11111111 11111111
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
@@ -12,10 +13,11 @@ pub struct Child(u32);
 
 const LEAF: u32 = 1 << 31;
 const COUNT_AT: u32 = 28;
+const KIND_AT: u32 = 30;
 const PLACE: u32 = (1 << COUNT_AT) - 1;
 
 /// The most blocks of a leaf.
-pub const MAX_BLOCKS: usize = 7;
+pub const MAX_BLOCKS: usize = 4;
 /// The most units that can be referred to: 8 GiB.
 pub const MAX_UNITS: usize = PLACE as usize;
 
@@ -55,13 +57,31 @@ impl Child {
     /// The blocks of a leaf.
     #[inline(always)]
     pub const fn blocks(self) -> u32 {
-        (self.0 >> COUNT_AT & 7) + 1
+        (self.0 >> COUNT_AT & 3) + 1
     }
 
-    /// A leaf without its first block, which takes so many units, if there are others.
+    /// What it is as a number below 4: [`Self::NODE`], [`Self::BLOCKS`], or [`Self::NOTHING`].
     #[inline(always)]
-    pub const fn rest(self, units: u32) -> Option<Self> {
-        if self.0 >> COUNT_AT & 7 == 0 { None } else { Some(Self(self.0 - (1 << COUNT_AT) + units)) }
+    pub const fn kind(self) -> usize {
+        (self.0 >> KIND_AT) as usize
+    }
+
+    /// The kind of nodes.
+    pub const NODE: usize = 0;
+    /// The kind of leaves.
+    pub const BLOCKS: usize = 2;
+    /// The kind of [`Self::NONE`].
+    pub const NOTHING: usize = 3;
+
+    #[inline(always)]
+    pub const fn is_none(self) -> bool {
+        self.0 == Self::NONE.0
+    }
+
+    /// A leaf without its first block, which takes so many units, and whether there are others.
+    #[inline(always)]
+    pub const fn shortened(self, units: u32) -> (Self, bool) {
+        (Self(self.0.wrapping_sub(1 << COUNT_AT).wrapping_add(units)), self.0 >> COUNT_AT & 3 != 0)
     }
 }
 
@@ -77,7 +97,8 @@ mod tests {
                 let leaf = Child::leaf(first, blocks);
                 assert!(!leaf.is_node() && leaf != Child::NONE);
                 assert_eq!((leaf.place(), leaf.blocks()), (first, blocks));
-                assert_eq!(leaf.rest(5), (blocks > 1).then(|| Child::leaf(first + 5, blocks - 1)));
+                let (rest, any) = leaf.shortened(5);
+                assert_eq!(any.then_some(rest), (blocks > 1).then(|| Child::leaf(first + 5, blocks - 1)));
             }
         }
     }

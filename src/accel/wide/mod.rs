@@ -6,17 +6,20 @@
 //! [`ray`] is one ray's way through the tree and [`batch`] that of many, taking turns.
 
 mod batch;
+mod beam;
 mod build;
 mod child;
 mod collapse;
 mod leaf;
 mod node;
+mod open;
 mod ray;
 mod slots;
 #[cfg(test)]
 mod tests;
 mod tree;
 mod unit;
+mod way;
 
 use std::sync::Arc;
 

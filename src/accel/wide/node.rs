@@ -1,12 +1,13 @@
 //! A node of eight boxes, and how a ray meets them all at once.
 //!
 //! The operations are those of [`crate::geometry::Slabs::interval`], so a box around another never has
-//! the smaller interval. The nearer plane of each axis is picked by the ray's sign, which takes the
-//! place of a minimum and a maximum.
+//! the smaller interval.
 
 use super::child::Child;
 use super::unit::{self, Unit};
-use crate::geometry::{Aabb, Sides};
+use crate::geometry::eight::Points;
+use crate::geometry::slabs::Boxes;
+use crate::geometry::{Aabb, EightSlabs, Slabs};
 use crate::simd::{LANES, Lanes, Simd};
 use glam::Vec3;
 
@@ -14,28 +15,10 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub struct Node {
-    /// `planes[axis][side][slot]`: the least and the greatest of each box. A slot that is not used is
-    /// empty: no ray meets it.
+    /// `planes[axis][side][slot]`: the least and the greatest of each box. A slot that is not used holds
+    /// NaN: no ray meets it.
     planes: [[Lanes; 2]; 3],
     children: [Child; LANES],
-}
-
-/// A ray as nodes see it: one number for all lanes.
-#[derive(Clone, Copy, Debug)]
-pub struct RayIn {
-    sides: Sides,
-    /// Which plane of each axis is met first: 0 for the least, 1 for the greatest.
-    first: [usize; 3],
-    /// Slots are visited in the order of `slot ^ order`, the last first: see [`super::slots`].
-    pub order: u32,
-}
-
-impl RayIn {
-    #[inline(always)]
-    pub fn new(sides: Sides) -> Self {
-        let backward = sides.backward as usize;
-        Self { first: [backward & 1, backward >> 1 & 1, backward >> 2], order: !sides.backward & 7, sides }
-    }
 }
 
 /// Which boxes a ray meets, and where it enters them.
@@ -62,7 +45,9 @@ impl Node {
     }
 
     pub fn new(children: &[(Child, Aabb); LANES]) -> Self {
-        let plane = |side: usize, axis: usize| children.each_ref().map(|(_, b)| [b.min, b.max][side][axis]);
+        let plane = |side: usize, axis: usize| {
+            children.each_ref().map(|(child, b)| if child.is_none() { f32::NAN } else { [b.min, b.max][side][axis] })
+        };
         let planes = [0, 1, 2].map(|axis| [0, 1].map(|side| plane(side, axis)));
         Self { planes, children: children.map(|(child, _)| child) }
     }
@@ -87,24 +72,23 @@ impl Node {
 
     /// Boxes entered in `[tmin, tmax]`.
     #[inline(always)]
-    pub fn meet<S: Simd>(&self, s: S, ray: &RayIn, tmin: f32, tmax: f32) -> Met<S::F> {
-        let [nx, ny, nz] = [self.near(s, ray, 0), self.near(s, ray, 1), self.near(s, ray, 2)];
-        let [fx, fy, fz] = [self.far(s, ray, 0), self.far(s, ray, 1), self.far(s, ray, 2)];
-        let entry = s.max(s.max(nx, ny), s.max(nz, s.splat(tmin)));
-        let exit = s.min(s.min(fx, fy), s.min(fz, s.splat(tmax)));
+    pub fn meet<S: Simd>(&self, s: S, slabs: &Slabs, tmin: f32, tmax: f32) -> Met<S::F> {
+        let (entry, exit) = EightSlabs::splat(s, slabs).intervals(s, &Boxes { min: self.corner(s, 0), max: self.corner(s, 1) });
+        let (entry, exit) = (s.max(s.splat(tmin), entry), s.min(exit, s.splat(tmax)));
         Met { slots: s.bits(s.le(entry, exit)), entry }
     }
 
+    /// The nearer, or else the farther planes of all axes, for rays that meet these sides of an axis first.
     #[inline(always)]
-    fn near<S: Simd>(&self, s: S, ray: &RayIn, axis: usize) -> S::F {
-        let plane = s.load(&self.planes[axis][ray.first[axis] & 1]);
-        s.mul(s.sub(s.splat(ray.sides.near[axis]), plane), s.splat(ray.sides.minus_inv[axis]))
+    pub fn planes<S: Simd>(&self, s: S, sides: [usize; 3]) -> Points<S::F> {
+        let ([x, y, z], [i, j, k]) = (&self.planes, sides);
+        Points { x: s.load(&x[i & 1]), y: s.load(&y[j & 1]), z: s.load(&z[k & 1]) }
     }
 
     #[inline(always)]
-    fn far<S: Simd>(&self, s: S, ray: &RayIn, axis: usize) -> S::F {
-        let plane = s.load(&self.planes[axis][ray.first[axis] & 1 ^ 1]);
-        s.mul(s.sub(s.splat(ray.sides.far[axis]), plane), s.splat(ray.sides.minus_inv[axis]))
+    fn corner<S: Simd>(&self, s: S, side: usize) -> Points<S::F> {
+        let [x, y, z] = &self.planes;
+        Points { x: s.load(&x[side]), y: s.load(&y[side]), z: s.load(&z[side]) }
     }
 }
 

@@ -62,8 +62,13 @@ fn coherent(geometry: &Geometry, hits: &[Option<Hit>], rays: &[Ray]) -> Vec<Ray>
 
 fn trace(accel: &dyn Accel, rays: &[Ray], mode: Mode) -> Vec<Option<Hit>> {
     let mut hits = vec![None; rays.len()];
-    accel.trace(rays, mode, &mut hits, &Cancel::new()).expect("not cancelled");
+    let traced = accel.trace(rays, mode, &mut hits, &Cancel::new()).expect("not cancelled");
+    assert!(traced.in_beams <= rays.len() as u64);
     hits
+}
+
+fn in_beams(accel: &dyn Accel, rays: &[Ray]) -> u64 {
+    accel.trace(rays, Mode::Any, &mut vec![None; rays.len()], &Cancel::new()).expect("not cancelled").in_beams
 }
 
 /// In batches and one by one, on every road, the hits are those of brute force.
@@ -84,6 +89,8 @@ fn equals_brute<T: TriTest, B: leaf::Pack>(model: &str, set: &[(&str, &str)], ki
         let mut tree: Tree<T, B> = build::build(&geometry, drafted, &p, &cx).expect("small");
         tree.road = road;
         assert_eq!(trace(&tree, &rays, Mode::Closest), expected, "{model}, {}", road.id());
+        assert!(in_beams(&tree, &rays[..6400]) > 2000, "{model}: a camera's rays go as beams");
+        assert!(in_beams(&tree, &rays[rays.len() - 3000..]) < 300, "{model}: scattered rays go their own ways");
         let found = trace(&tree, &rays, Mode::Any);
         assert!(found.iter().zip(&any).all(|(a, b)| a.is_some() == b.is_some()), "{model}, {}, any hit", road.id());
         for (ray, expected) in rays.iter().zip(&expected).step_by(17) {

@@ -4,11 +4,12 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::batch::{Batch, TURNS, with_open};
+use super::batch::{Batch, with_open, with_under_way};
 use super::child::Child;
 use super::leaf::Pack;
 use super::node::Node;
-use super::ray::{Open, Walk};
+use super::open::Open;
+use super::ray::{self, Ground};
 use super::slots::bits;
 use super::unit::{self, Unit};
 use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape};
@@ -55,19 +56,18 @@ impl<T: TriTest, B: Pack> Tree<T, B> {
         if self.root == Child::NONE {
             return None;
         }
-        let mut walk = Walk::<T>::new(ray, &self.geometry, self.root, open);
-        while walk.step::<S, B, Q, P>(s, &self.units, query, probe) {}
-        walk.found()
+        let ground = Ground { units: &self.units, root: self.root, bounds: self.geometry.bounds() };
+        ray::walk::<S, T, B, Q, P>(s, ground, ray, query, probe, open)
     }
 
     /// One ray on the tree's road.
     fn one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
-        with_open(1, |open| self.road.run(One { tree: self, ray, query, probe, open: &mut open[0] }))
+        with_open(|open| self.road.run(One { tree: self, ray, query, probe, open }))
     }
 
     /// One ray on the plain road.
     fn plainly<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
-        with_open(1, |open| self.walk(Portable, ray, query, probe, &mut open[0]))
+        with_open(|open| self.walk(Portable, ray, query, probe, open))
     }
 
     /// The blocks from a place on.
@@ -127,7 +127,7 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         if rays.len() == 1 || self.root == Child::NONE {
             return one_by_one(&self.geometry, rays, hits, cancel, |ray| self.trace_one(ray, query, &mut Off));
         }
-        with_open(TURNS.min(rays.len()), |open| self.road.run(Batch { tree: self, rays, query, hits, cancel, open }))
+        with_under_way(|under_way| self.road.run(Batch { tree: self, rays, query, hits, cancel, under_way }))
     }
 
     fn trace_plain<Q: Query>(

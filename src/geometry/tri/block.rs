@@ -2,6 +2,7 @@
 //! The operations are those of the test of one triangle, in the same order and unfused, so the look
 //! never loses a hit.
 
+use crate::geometry::eight::Points;
 use crate::simd::{LANES, Lanes, Simd};
 use glam::Vec3;
 
@@ -14,49 +15,17 @@ pub trait Eight {
     fn triangle(&self, lane: usize) -> [Vec3; 3];
 }
 
-/// Eight points.
-#[derive(Clone, Copy)]
-pub struct Points<F> {
-    x: F,
-    y: F,
-    z: F,
+/// A corner of eight triangles, the axes in some order.
+#[inline(always)]
+fn corner<S: Simd>(s: S, triangles: &impl Eight, corner: usize, axes: [usize; 3]) -> Points<S::F> {
+    let [x, y, z] = axes;
+    Points { x: triangles.corner(s, corner, x), y: triangles.corner(s, corner, y), z: triangles.corner(s, corner, z) }
 }
 
-// No closures: what is inlined into a road must say so, and closures cannot.
-impl<F: Copy> Points<F> {
-    /// The same point eight times.
-    #[inline(always)]
-    pub fn splat<S: Simd<F = F>>(s: S, p: Vec3) -> Self {
-        Self { x: s.splat(p.x), y: s.splat(p.y), z: s.splat(p.z) }
-    }
-
-    /// A corner of eight triangles.
-    #[inline(always)]
-    pub fn corner<S: Simd<F = F>>(s: S, triangles: &impl Eight, corner: usize) -> Self {
-        Self { x: triangles.corner(s, corner, 0), y: triangles.corner(s, corner, 1), z: triangles.corner(s, corner, 2) }
-    }
-
-    /// From other points to these.
-    #[inline(always)]
-    pub fn minus<S: Simd<F = F>>(self, s: S, other: Self) -> Self {
-        Self { x: s.sub(self.x, other.x), y: s.sub(self.y, other.y), z: s.sub(self.z, other.z) }
-    }
-
-    /// In the order of [`Vec3::cross`].
-    #[inline(always)]
-    pub fn cross<S: Simd<F = F>>(self, s: S, other: Self) -> Self {
-        Self {
-            x: s.sub(s.mul(self.y, other.z), s.mul(other.y, self.z)),
-            y: s.sub(s.mul(self.z, other.x), s.mul(other.z, self.x)),
-            z: s.sub(s.mul(self.x, other.y), s.mul(other.x, self.y)),
-        }
-    }
-
-    /// In the order of [`Vec3::dot`].
-    #[inline(always)]
-    pub fn dot<S: Simd<F = F>>(self, s: S, other: Self) -> F {
-        s.add(s.add(s.mul(self.x, other.x), s.mul(self.y, other.y)), s.mul(self.z, other.z))
-    }
+/// The corners of eight triangles.
+#[inline(always)]
+pub fn corners<S: Simd>(s: S, triangles: &impl Eight, axes: [usize; 3]) -> [Points<S::F>; 3] {
+    [corner(s, triangles, 0, axes), corner(s, triangles, 1, axes), corner(s, triangles, 2, axes)]
 }
 
 /// Corners by corner, axis and lane.

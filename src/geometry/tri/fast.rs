@@ -1,7 +1,7 @@
 //! Möller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection".
 
-use super::block::Points;
-use super::{Eight, TestKind, TriHit, TriTest};
+use super::{Meets, Own, TestKind, TriHit, TriTest};
+use crate::geometry::eight::{Points, Rays};
 use crate::geometry::{Aabb, Ray, Slabs};
 use crate::simd::Simd;
 use glam::Vec3;
@@ -52,17 +52,37 @@ impl TriTest for Fast {
     }
 
     #[inline(always)]
-    fn may_meet<S: Simd>(&self, s: S, triangles: &impl Eight) -> u32 {
-        let d = Points::splat(s, self.dir);
-        let a = Points::corner(s, triangles, 0);
-        let e1 = Points::corner(s, triangles, 1).minus(s, a);
-        let e2 = Points::corner(s, triangles, 2).minus(s, a);
-        let o = Points::splat(s, self.origin).minus(s, a);
+    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, [a, b, c]: &[Points<S::F>; 3]) -> Meets<S> {
+        let &[ox, oy, oz, dx, dy, dz, _] = own;
+        let (o, d) = (Points { x: ox, y: oy, z: oz }, Points { x: dx, y: dy, z: dz });
+        let (e1, e2) = (b.minus(s, *a), c.minus(s, *a));
+        let o = o.minus(s, *a);
         let (p, q) = (d.cross(s, e2), o.cross(s, e1));
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
+        // Where the determinant is zero, u is infinite or none.
         let inv = s.div(one, e1.dot(s, p));
         let u = s.mul(o.dot(s, p), inv);
         let v = s.mul(d.dot(s, q), inv);
-        s.bits(s.and(s.and(s.le(zero, u), s.le(u, one)), s.and(s.le(zero, v), s.le(s.add(u, v), one))))
+        let t = s.mul(e2.dot(s, q), inv);
+        let inside = s.and(s.and(s.le(zero, u), s.le(u, one)), s.and(s.le(zero, v), s.le(s.add(u, v), one)));
+        Meets { met: s.and(inside, s.le(s.abs(t), s.splat(f32::MAX))), doubt: None, t, u, v }
+    }
+
+    #[inline(always)]
+    fn own(&self) -> Own<f32> {
+        let (o, d) = (self.origin, self.dir);
+        [o.x, o.y, o.z, d.x, d.y, d.z, 0.0]
+    }
+
+    #[inline(always)]
+    fn own_of_eight<S: Simd>(s: S, rays: &Rays<S::F>) -> Own<S::F> {
+        let (o, d) = (rays.origin, rays.dir);
+        [o.x, o.y, o.z, d.x, d.y, d.z, s.splat(0.0)]
+    }
+
+    #[inline(always)]
+    fn from_own(own: &Own<f32>, slabs: Slabs) -> Self {
+        let &[ox, oy, oz, dx, dy, dz, _] = own;
+        Self { origin: Vec3::new(ox, oy, oz), dir: Vec3::new(dx, dy, dz), slabs }
     }
 }

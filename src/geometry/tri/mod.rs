@@ -9,11 +9,13 @@ mod block;
 mod fast;
 mod watertight;
 
-pub use block::{Block, Eight};
+pub use block::{Block, Eight, corners};
 pub use fast::Fast;
 pub use watertight::Watertight;
 
-use super::{Aabb, Ray, Slabs};
+use super::eight::{Points, Rays};
+use super::slabs::Boxes;
+use super::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::Simd;
 use glam::Vec3;
 
@@ -26,6 +28,23 @@ pub struct TriHit {
     pub u: f32,
     /// Barycentric weight of the third corner.
     pub v: f32,
+}
+
+/// What a test keeps of a ray: up to seven numbers, or their bits.
+pub type Own<F> = [F; 7];
+
+/// The same numbers in all lanes.
+#[inline(always)]
+pub fn splat_own<S: Simd>(s: S, own: &Own<f32>) -> Own<S::F> {
+    let &[a, b, c, d, e, f, g] = own;
+    [s.splat(a), s.splat(b), s.splat(c), s.splat(d), s.splat(e), s.splat(f), s.splat(g)]
+}
+
+/// The boxes of eight triangles.
+#[inline(always)]
+pub fn boxes_of<S: Simd>(s: S, corners: &[Points<S::F>; 3]) -> Boxes<S::F> {
+    let [a, b, c] = *corners;
+    Boxes { min: a.min(s, b).min(s, c), max: a.max(s, b).max(s, c) }
 }
 
 /// A ray-triangle test and the box test that goes with it.
@@ -42,9 +61,51 @@ pub trait TriTest: Copy + Send + Sync + 'static {
     /// The bare test, without regard to `[tmin, tmax]` or the triangle's box. Two-sided.
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit>;
 
+    /// The same of eight triangles and as many rays, one of each in a lane, by the same operations in the same
+    /// order and unfused; the corners come with the axes in the order of [`Self::axes`].
+    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, corners: &[Points<S::F>; 3]) -> Meets<S>;
+
+    /// The order of the axes in which the test of eight takes coordinates.
+    #[inline(always)]
+    fn axes(&self) -> [usize; 3] {
+        [0, 1, 2]
+    }
+
+    /// What the test needs of a ray besides the slabs, as numbers.
+    fn own(&self) -> Own<f32>;
+
+    /// The same of eight rays, as [`Self::prepare`] works it out.
+    fn own_of_eight<S: Simd>(s: S, rays: &Rays<S::F>) -> Own<S::F>;
+
+    /// Of such numbers.
+    fn from_own(own: &Own<f32>, slabs: Slabs) -> Self;
+
     /// Which of eight triangles [`Self::meet`] may accept, a bit for each lane: all that it does
     /// accept are among them.
-    fn may_meet<S: Simd>(&self, s: S, triangles: &impl Eight) -> u32;
+    #[inline(always)]
+    fn may_meet<S: Simd>(&self, s: S, triangles: &impl Eight) -> u32 {
+        let meets = Self::meet_eight(s, &splat_own(s, &self.own()), &block::corners(s, triangles, self.axes()));
+        s.bits(meets.met) | meets.doubt(s)
+    }
+
+    /// As [`Self::hit`] of eight triangles and as many rays, whose `own` numbers, slabs and intervals these are;
+    /// the axes in the order of [`Self::axes`].
+    #[inline(always)]
+    fn hit_eight<S: Simd>(
+        s: S,
+        own: &Own<S::F>,
+        slabs: &EightSlabs<S::F>,
+        interval: [S::F; 2],
+        corners: &[Points<S::F>; 3],
+    ) -> Hits<S> {
+        let meets = Self::meet_eight(s, own, corners);
+        let (entry, exit) = slabs.intervals(s, &boxes_of(s, corners));
+        // An empty interval holds no t.
+        let t = s.min(exit, s.max(entry, meets.t));
+        let [tmin, tmax] = interval;
+        let inside = s.and(s.le(entry, exit), s.and(s.le(tmin, t), s.le(t, tmax)));
+        Hits { hit: s.and(meets.met, inside), doubt: meets.doubt(s), t, u: meets.u, v: meets.v }
+    }
 
     /// The whole test, by the rule above.
     #[inline(always)]
@@ -58,6 +119,42 @@ pub trait TriTest: Copy + Send + Sync + 'static {
         let t = if t > exit { exit } else { t };
         (tmin <= t && t <= tmax).then_some(TriHit { t, ..hit })
     }
+}
+
+/// Which of eight triangles are met, and where.
+#[derive(Clone, Copy)]
+pub struct Meets<S: Simd> {
+    met: S::M,
+    /// Those that only the test of one triangle can tell about, if there may be any.
+    doubt: Option<S::M>,
+    t: S::F,
+    u: S::F,
+    v: S::F,
+}
+
+impl<S: Simd> Meets<S> {
+    #[inline(always)]
+    fn doubt(&self, s: S) -> u32 {
+        match self.doubt {
+            Some(doubt) => s.bits(doubt),
+            None => 0,
+        }
+    }
+}
+
+/// Which of eight triangles are hit, and where.
+#[derive(Clone, Copy)]
+pub struct Hits<S: Simd> {
+    /// Those that are.
+    pub hit: S::M,
+    /// A bit for each of those that have to be tested one by one: they may be hit or not.
+    pub doubt: u32,
+    /// As in [`TriHit`].
+    pub t: S::F,
+    /// As in [`TriHit`].
+    pub u: S::F,
+    /// As in [`TriHit`].
+    pub v: S::F,
 }
 
 /// The tests by name.

@@ -1,6 +1,7 @@
 //! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2:1).
 
-use super::{Eight, TestKind, TriHit, TriTest};
+use super::{Meets, Own, TestKind, TriHit, TriTest};
+use crate::geometry::eight::{Points, Rays};
 use crate::geometry::num::narrow;
 use crate::geometry::{Aabb, Ray, Slabs};
 use crate::simd::Simd;
@@ -16,9 +17,10 @@ use glam::Vec3;
 /// 32-bit numbers are exact.
 #[derive(Clone, Copy, Debug)]
 pub struct Watertight {
+    /// With the axes in order.
     origin: Vec3,
-    /// The axis of the greatest direction component becomes z; x and y swap to keep the winding.
-    axes: [usize; 3],
+    /// The order of the axes: see [`AXES`].
+    axes: u32,
     /// `x -= sx * z`, `y -= sy * z`, `z *= sz`.
     shear: Vec3,
     slabs: Slabs,
@@ -38,10 +40,11 @@ impl TriTest for Watertight {
         } else {
             2
         };
-        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
-        let (kx, ky) = if d[kz] < 0.0 { (ky, kx) } else { (kx, ky) };
+        let axes = 2 * kz + u32::from(d[kz as usize] < 0.0);
+        let [kx, ky, kz] = AXES[axes as usize % 8];
         let shear = Vec3::new(d[kx] / d[kz], d[ky] / d[kz], 1.0 / d[kz]);
-        Self { origin: ray.origin, axes: [kx, ky, kz], shear, slabs: Slabs::new(ray, bounds) }
+        let origin = Vec3::new(ray.origin[kx], ray.origin[ky], ray.origin[kz]);
+        Self { origin, axes, shear, slabs: Slabs::new(ray, bounds) }
     }
 
     #[inline(always)]
@@ -51,7 +54,7 @@ impl TriTest for Watertight {
 
     #[inline(always)]
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
-        let [a, b, c] = tri.map(|p| self.sheared(p - self.origin));
+        let [a, b, c] = tri.map(|p| self.sheared(p));
         let u = c.x * b.y - c.y * b.x;
         let v = a.x * c.y - a.y * c.x;
         let w = b.x * a.y - b.y * a.x;
@@ -67,35 +70,90 @@ impl TriTest for Watertight {
     }
 
     #[inline(always)]
-    fn may_meet<S: Simd>(&self, s: S, triangles: &impl Eight) -> u32 {
-        let a = self.sheared_corner(s, triangles, 0);
-        let b = self.sheared_corner(s, triangles, 1);
-        let c = self.sheared_corner(s, triangles, 2);
-        let u = s.sub(s.mul(c.0, b.1), s.mul(c.1, b.0));
-        let v = s.sub(s.mul(a.0, c.1), s.mul(a.1, c.0));
-        let w = s.sub(s.mul(b.0, a.1), s.mul(b.1, a.0));
-        // A zero is settled in 64 bits later; what is not zero has the right sign already.
+    fn axes(&self) -> [usize; 3] {
+        AXES[self.axes as usize % 8]
+    }
+
+    #[inline(always)]
+    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, [a, b, c]: &[Points<S::F>; 3]) -> Meets<S> {
+        let (a, b, c) = (shear(s, own, *a), shear(s, own, *b), shear(s, own, *c));
+        let u = s.sub(s.mul(c.x, b.y), s.mul(c.y, b.x));
+        let v = s.sub(s.mul(a.x, c.y), s.mul(a.y, c.x));
+        let w = s.sub(s.mul(b.x, a.y), s.mul(b.y, a.x));
         let zero = s.splat(0.0);
         let (least, greatest) = (s.min(s.min(u, v), w), s.max(s.max(u, v), w));
-        s.bits(s.or(s.le(zero, least), s.le(greatest, zero)))
+        // A zero is settled in 64 bits later; what is not zero has the right sign already.
+        let met = s.or(s.lt(zero, least), s.lt(greatest, zero));
+        let doubt = s.or(s.eq(zero, least), s.eq(greatest, zero));
+        let inv = s.div(s.splat(1.0), s.add(s.add(u, v), w));
+        let t = s.add(s.add(s.mul(u, a.z), s.mul(v, b.z)), s.mul(w, c.z));
+        let t = s.mul(t, s.mul(own[5], inv));
+        let met = s.and(met, s.le(s.abs(t), s.splat(f32::MAX)));
+        Meets { met, doubt: Some(doubt), t, u: s.mul(v, inv), v: s.mul(w, inv) }
+    }
+
+    #[inline(always)]
+    fn own(&self) -> Own<f32> {
+        let (o, h) = (self.origin, self.shear);
+        [o.x, o.y, o.z, h.x, h.y, h.z, f32::from_bits(self.axes)]
+    }
+
+    #[inline(always)]
+    fn own_of_eight<S: Simd>(s: S, rays: &Rays<S::F>) -> Own<S::F> {
+        let (d, o, a) = (rays.dir, rays.origin, rays.dir.abs(s));
+        let (zero, one) = (s.splat(0.0), s.splat(1.0));
+        let z_is_x = s.and(s.lt(a.y, a.x), s.lt(a.z, a.x));
+        let z_is_y = s.lt(a.z, a.y);
+        let (d, o) = (turned(s, d, z_is_x, z_is_y), turned(s, o, z_is_x, z_is_y));
+        let swap = s.lt(d.z, zero);
+        let (d, o) = (swapped(s, d, swap), swapped(s, o, swap));
+        let axes = s.select(z_is_x, zero, s.select(z_is_y, s.splat_bits(2), s.splat_bits(4)));
+        let axes = s.add_bits(axes, s.select(swap, s.splat_bits(1), zero));
+        [o.x, o.y, o.z, s.div(d.x, d.z), s.div(d.y, d.z), s.div(one, d.z), axes]
+    }
+
+    #[inline(always)]
+    fn from_own(own: &Own<f32>, slabs: Slabs) -> Self {
+        let &[ox, oy, oz, sx, sy, sz, axes] = own;
+        Self { origin: Vec3::new(ox, oy, oz), axes: axes.to_bits(), shear: Vec3::new(sx, sy, sz), slabs }
     }
 }
 
-impl Watertight {
-    /// The first two coordinates of a corner of eight triangles, as [`Self::sheared`].
-    #[inline(always)]
-    fn sheared_corner<S: Simd>(&self, s: S, triangles: &impl Eight, corner: usize) -> (S::F, S::F) {
-        let [kx, ky, kz] = self.axes;
-        let z = s.sub(triangles.corner(s, corner, kz), s.splat(self.origin[kz]));
-        let x = s.sub(triangles.corner(s, corner, kx), s.splat(self.origin[kx]));
-        let y = s.sub(triangles.corner(s, corner, ky), s.splat(self.origin[ky]));
-        (s.sub(x, s.mul(s.splat(self.shear.x), z)), s.sub(y, s.mul(s.splat(self.shear.y), z)))
-    }
+/// The axis of the greatest direction component becomes z; x and y swap to keep the winding. By the
+/// number `2 * z + swap`.
+const AXES: [[usize; 3]; 8] = [[1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1], [0, 1, 2], [1, 0, 2], [0, 1, 2], [1, 0, 2]];
 
+/// As [`Watertight::sheared`] of corners whose axes are in order.
+#[inline(always)]
+fn shear<S: Simd>(s: S, own: &Own<S::F>, p: Points<S::F>) -> Points<S::F> {
+    let &[ox, oy, oz, sx, sy, ..] = own;
+    let p = p.minus(s, Points { x: ox, y: oy, z: oz });
+    Points { x: s.sub(p.x, s.mul(sx, p.z)), y: s.sub(p.y, s.mul(sy, p.z)), z: p.z }
+}
+
+/// The axes in the order that makes the greatest z.
+#[inline(always)]
+fn turned<S: Simd>(s: S, p: Points<S::F>, z_is_x: S::M, z_is_y: S::M) -> Points<S::F> {
+    Points {
+        x: s.select(z_is_x, p.y, s.select(z_is_y, p.z, p.x)),
+        y: s.select(z_is_x, p.z, s.select(z_is_y, p.x, p.y)),
+        z: s.select(z_is_x, p.x, s.select(z_is_y, p.y, p.z)),
+    }
+}
+
+/// x and y in each other's place where it is said.
+#[inline(always)]
+fn swapped<S: Simd>(s: S, p: Points<S::F>, swap: S::M) -> Points<S::F> {
+    Points { x: s.select(swap, p.y, p.x), y: s.select(swap, p.x, p.y), z: p.z }
+}
+
+impl Watertight {
+    /// A corner as the ray sees it.
     #[inline(always)]
     fn sheared(&self, p: Vec3) -> Vec3 {
-        let [kx, ky, kz] = self.axes;
-        Vec3::new(p[kx] - self.shear.x * p[kz], p[ky] - self.shear.y * p[kz], p[kz])
+        let [kx, ky, kz] = self.axes();
+        let p = Vec3::new(p[kx], p[ky], p[kz]) - self.origin;
+        Vec3::new(p.x - self.shear.x * p.z, p.y - self.shear.y * p.z, p.z)
     }
 
     /// The same with the edges in 64 bits, for a ray through an edge or a vertex (or one whose

@@ -88,7 +88,7 @@ pub(super) fn found(ray: &Ray, hit: Option<&Hit>, mode: Mode, geometry: &Geometr
         None => Found::MISS,
         Some(_) if mode == Mode::Any => Found::SOMETHING,
         Some(hit) => {
-            let t = geometry.space().enter(ray).scaled_t(hit.t);
+            let t = geometry.space().enter(ray).back.scaled_t(hit.t);
             Found { t, prim: geometry.flat(hit.instance, hit.primitive) }
         }
     }
