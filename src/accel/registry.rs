@@ -72,7 +72,7 @@ impl Entry {
 }
 
 /// Every structure, the simplest first.
-pub const ALL: &[Entry] = &[
+pub static ALL: &[Entry] = &[
     Entry {
         id: "brute",
         name: "Brute force",

@@ -150,6 +150,17 @@ impl Road {
         }
     }
 
+    /// Runs a kernel that is for eight lanes side by side, many of them at a time; gives it back on the plain
+    /// road, where it would gain nothing and takes minutes to compile.
+    #[inline]
+    pub fn run_wide<K: Kernel>(self, kernel: K) -> Result<K::Out, K> {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(s) => Ok(s.run(kernel)),
+            Self::Portable(_) => Err(kernel),
+        }
+    }
+
     /// Runs a kernel on it.
     #[inline]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Out {

@@ -29,7 +29,8 @@ impl Simd for Portable {
     type M = u32;
     type I = [u8; LANES];
 
-    #[inline(always)]
+    // Not inlined: compiled once, whoever asks for it.
+    #[inline(never)]
     fn run<K: Kernel>(self, kernel: K) -> K::Out {
         kernel.run(self)
     }

@@ -56,20 +56,33 @@ thread_local! {
 /// Lends room for a batch.
 pub fn with_under_way<R>(work: impl FnOnce(&mut UnderWay) -> R) -> R {
     // Taken while it is lent: a query may trace rays of its own.
-    let idle = || Box::new(UnderWay { ways: [const { Way::idle() }; RAYS], beams: [const { Beam::idle() }; BEAMS] });
-    let mut under_way = UNDER_WAY.take().unwrap_or_else(idle);
+    let mut under_way = UNDER_WAY.take().unwrap_or_else(nobody);
     let result = work(&mut under_way);
     UNDER_WAY.set(Some(under_way));
     result
 }
 
+/// Too large for the frame of whoever asks for it.
+#[cold]
+#[inline(never)]
+fn nobody() -> Box<UnderWay> {
+    Box::new(UnderWay { ways: [const { Way::idle() }; RAYS], beams: [const { Beam::idle() }; BEAMS] })
+}
+
 /// Lends room for one ray.
 #[inline(always)]
 pub fn with_open<R>(work: impl FnOnce(&mut Open) -> R) -> R {
-    let mut open = OPEN.take().unwrap_or_else(|| Box::new(Open::new()));
+    let mut open = OPEN.take().unwrap_or_else(nothing_open);
     let result = work(&mut open);
     OPEN.set(Some(open));
     result
+}
+
+/// As [`nobody`].
+#[cold]
+#[inline(never)]
+fn nothing_open() -> Box<Open> {
+    Box::new(Open::new())
 }
 
 /// Rays, or beams, by what they do next, each with what it visits: the kinds of [`Child`], and [`SETTLE`].
@@ -244,7 +257,7 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
             }
             for i in idle_beams..beam_lists.lens[Child::NOTHING] {
                 let (_, who) = beam_lists.get(Child::NOTHING, i);
-                beams[who].end(&whose, hits);
+                beams[who].end(s, &whose, hits);
             }
         }
     }

@@ -15,7 +15,6 @@ use crate::accel::probe::Off;
 use crate::accel::{Hit, PrimHit, Query};
 use crate::geometry::eight::{Points, Rays};
 use crate::geometry::slabs::Boxes;
-use crate::geometry::space::Back;
 use crate::geometry::tri::{Hits, Own, TriTest, boxes_of, corners};
 use crate::geometry::{EightSlabs, Slabs};
 use crate::scene::{PrimRef, Whose};
@@ -178,9 +177,7 @@ impl Beam {
             return true;
         }
         let own = self.own(s);
-        let slabs = self.slabs_in_order(s);
         let axes = self.axes.map(|axis| axis % 3);
-        let tmins = s.load(&self.tmins);
         let mut in_memory = [[[0.0; LANES]; 3]; 3];
         let [a, b, c] = all;
         a.store(s, &mut in_memory[0]);
@@ -192,12 +189,17 @@ impl Beam {
             left &= left - 1;
             let [a, b, c] = &in_memory;
             let corner = [splat(s, a, axes, lane), splat(s, b, axes, lane), splat(s, c, axes, lane)];
-            let ends = s.load(&self.ends);
-            let hits = T::hit_eight(s, &own, &slabs, [tmins, ends], &corner);
+            // Most are met by none of the rays.
+            let meets = T::meet_eight(s, &own, &corner);
+            if !meets.any(s) {
+                continue;
+            }
+            let interval = [s.load(&self.tmins), s.load(&self.ends)];
+            let hits = meets.inside(s, &self.slabs_in_order(s), interval, &corner);
             if self.keep::<S, T, B, Q>(s, &hits, block, lane, query) {
                 any = true;
                 // Rays that are done end before they begin.
-                if query.any() && s.bits(s.le(tmins, s.load(&self.ends))) == 0 {
+                if query.any() && s.bits(s.le(interval[0], s.load(&self.ends))) == 0 {
                     return false;
                 }
             }
@@ -267,7 +269,10 @@ impl Beam {
 
     /// Writes what was found.
     #[inline(always)]
-    pub fn end(&self, whose: &Whose<'_>, hits: &mut [Option<Hit>]) {
+    pub fn end<S: Simd>(&self, s: S, whose: &Whose<'_>, hits: &mut [Option<Hit>]) {
+        // As `Back::world_t` of rays that were not moved: the product is rounded once.
+        let mut t = [0.0; LANES];
+        s.store(s.mul(s.add(s.load(&self.t), s.splat(0.0)), s.load(&self.scales)), &mut t);
         let Some(hits) = hits[self.first..].first_chunk_mut::<LANES>() else { return };
         for (lane, hit) in hits.iter_mut().enumerate() {
             let prim = self.prims[lane];
@@ -275,8 +280,7 @@ impl Beam {
                 None
             } else {
                 let (instance, primitive) = whose.locate(prim);
-                let t = Back::scaled(self.scales[lane]).world_t(self.t[lane]);
-                Some(Hit { t, u: self.u[lane], v: self.v[lane], instance, primitive })
+                Some(Hit { t: t[lane], u: self.u[lane], v: self.v[lane], instance, primitive })
             };
         }
     }

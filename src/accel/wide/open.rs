@@ -40,6 +40,15 @@ impl Open {
         1
     }
 
+    /// The last where nothing is open.
+    pub const EMPTY: u32 = 0;
+
+    /// The last, and which is the last without it. Nothing comes after [`Child::NONE`].
+    #[inline(always)]
+    pub const fn pop(&self, last: u32) -> (Child, u32) {
+        (self.next(last), last.wrapping_sub(1))
+    }
+
     /// What is visited next.
     #[inline(always)]
     pub const fn next(&self, last: u32) -> Child {
@@ -50,13 +59,29 @@ impl Open {
     /// Slots are taken in the order of `slot ^ order`, the last first: see [`super::slots`].
     #[inline(always)]
     pub fn replace<S: Simd>(&mut self, s: S, last: u32, node: &Node, met: &Met<S::F>, order: u32) -> u32 {
-        let in_order = UNDER_XOR[(order & 7) as usize][(met.slots & 0xff) as usize];
+        self.put(s, last, node, &met.entry, in_order(met.slots, order), order).wrapping_sub(1)
+    }
+
+    /// Puts all children that were met, one at least, but the nearest, after the last: the nearest, and which
+    /// is the last then.
+    #[inline(always)]
+    pub fn keep_others<S: Simd>(&mut self, s: S, last: u32, node: &Node, met: &Met<S::F>, order: u32) -> (Child, u32) {
+        let all = in_order(met.slots, order);
+        let nearest = 31 - u32::from(all).leading_zeros();
+        let child = node.children()[((nearest ^ order) & 7) as usize];
+        let others = all & !(1u32 << nearest) as u8;
+        (child, self.put(s, last + 1, node, &met.entry, others, order).wrapping_sub(1))
+    }
+
+    /// Writes children from a place on: the first place that is free then.
+    #[inline(always)]
+    fn put<S: Simd>(&mut self, s: S, at: u32, node: &Node, entry: &S::F, in_order: u8, order: u32) -> u32 {
         let from = s.flip(s.indices(&LEFT[usize::from(in_order)]), order);
         let children = s.permute(s.load_bits(bytemuck::cast_ref(node.children())), from);
-        let entries = s.permute(met.entry, from);
-        s.store_bits(children, bytemuck::cast_mut(eight(&mut self.children, last as usize)));
-        s.store(entries, eight(&mut self.entries, last as usize));
-        last.wrapping_add(met.slots.count_ones()).wrapping_sub(1)
+        let entries = s.permute(*entry, from);
+        s.store_bits(children, bytemuck::cast_mut(eight(&mut self.children, at as usize)));
+        s.store(entries, eight(&mut self.entries, at as usize));
+        at.wrapping_add(in_order.count_ones())
     }
 
     /// Takes the first block, of so many units, off the last, which is this leaf; which is the last then.
@@ -91,6 +116,12 @@ impl Open {
         // What lies below them all always stays.
         kept as u32 - 1
     }
+}
+
+/// Slots as bits, each at the place where it comes in the order of a ray.
+#[inline(always)]
+fn in_order(slots: u32, order: u32) -> u8 {
+    UNDER_XOR[(order & 7) as usize][(slots & 0xff) as usize]
 }
 
 /// Eight of a list from some place on.

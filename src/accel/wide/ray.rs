@@ -38,22 +38,27 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
     let in_order = EightSlabs::splat(s, &test.slabs().in_order(axes));
     let own = splat_own(s, &test.own());
     let mut best = Best::new(ray.tmin, ray.tmax);
-    let mut last = open.begin(root, ray.tmin);
+    // Visited next; what is open comes after it.
+    let mut child = root;
+    let mut last = Open::EMPTY;
     let mut found = Found::NONE;
     loop {
-        let child = open.next(last);
         if child.is_node() {
             probe.node();
             probe.at(child.place());
             let node = Node::at(units, child.place());
             let met = node.meet(s, test.slabs(), best.tmin(), best.t());
-            last = open.replace(s, last, node, &met, order);
             if P::LISTENS {
                 for (slot, child) in node.children().iter().enumerate() {
                     if *child != Child::NONE && met.slots >> slot & 1 == 0 {
                         probe.pruned(child.place(), why_not(test.slabs(), &node.bounds(slot), &best));
                     }
                 }
+            }
+            if met.slots == 0 {
+                (child, last) = open.pop(last);
+            } else {
+                (child, last) = open.keep_others(s, last, node, &met, order);
             }
             continue;
         }
@@ -62,32 +67,32 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
         }
         let before = best.t();
         if P::WATCHES {
-            // Whoever watches sees the leaf as a whole, and every triangle of it.
             probe.node();
             probe.at(child.place());
             probe.leaf();
-            last -= 1;
-            for block in 0..child.blocks() {
-                let block = B::at(units, child.place() + block * B::UNITS);
-                for lane in bits(block.lanes()) {
-                    if best.test(&test, &block.triangle(lane), block.prim(lane), query, probe) {
-                        return best.found();
-                    }
+        }
+        for block in 0..child.blocks() {
+            let block = B::at(units, child.place() + block * B::UNITS);
+            let over = if P::WATCHES {
+                // Whoever watches sees every triangle.
+                bits(block.lanes()).any(|lane| best.test(&test, &block.triangle(lane), block.prim(lane), query, probe))
+            } else {
+                let corners = corners(s, block, axes);
+                let meets = T::meet_eight(s, &own, &corners);
+                meets.any(s) && {
+                    let interval = [s.splat(best.tmin()), s.splat(best.t())];
+                    found.keep(s, &meets.inside(s, &in_order, interval, &corners), block.lanes());
+                    found.settle(&test, block, query, &mut best, probe)
                 }
-            }
-        } else {
-            last = open.shorten(last, child, B::UNITS);
-            let block = B::at(units, child.place());
-            let interval = [s.splat(best.tmin()), s.splat(best.t())];
-            let hits = T::hit_eight(s, &own, &in_order, interval, &corners(s, block, axes));
-            found.keep(s, &hits, block.lanes());
-            if found.settle(&test, block, query, &mut best, probe) {
+            };
+            if over {
                 return best.found();
             }
         }
         if best.t() < before {
             last = open.forget_behind(s, last, best.t(), probe);
         }
+        (child, last) = open.pop(last);
     }
 }
 

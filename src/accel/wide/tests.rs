@@ -89,7 +89,9 @@ fn equals_brute<T: TriTest, B: leaf::Pack>(model: &str, set: &[(&str, &str)], ki
         let mut tree: Tree<T, B> = build::build(&geometry, drafted, &p, &cx).expect("small");
         tree.road = road;
         assert_eq!(trace(&tree, &rays, Mode::Closest), expected, "{model}, {}", road.id());
-        assert!(in_beams(&tree, &rays[..6400]) > 2000, "{model}: a camera's rays go as beams");
+        if !matches!(road, Road::Portable(_)) {
+            assert!(in_beams(&tree, &rays[..6400]) > 2000, "{model}: a camera's rays go as beams");
+        }
         assert!(in_beams(&tree, &rays[rays.len() - 3000..]) < 300, "{model}: scattered rays go their own ways");
         let found = trace(&tree, &rays, Mode::Any);
         assert!(found.iter().zip(&any).all(|(a, b)| a.is_some() == b.is_some()), "{model}, {}, any hit", road.id());

@@ -14,7 +14,7 @@ use super::slots::bits;
 use super::unit::{self, Unit};
 use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape};
 use crate::accel::probe::{Off, Probe};
-use crate::accel::{Hit, PrimHit, Query, Structure, Traced, one_by_one};
+use crate::accel::{Hit, PrimHit, Query, Structure, Traced, in_scaled_space, one_by_one};
 use crate::geometry::tri::TriTest;
 use crate::geometry::{Aabb, Ray};
 use crate::scene::{Geometry, PrimRef};
@@ -61,13 +61,14 @@ impl<T: TriTest, B: Pack> Tree<T, B> {
     }
 
     /// One ray on the tree's road.
+    #[inline(always)]
     fn one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
         with_open(|open| self.road.run(One { tree: self, ray, query, probe, open }))
     }
 
     /// One ray on the plain road.
     fn plainly<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
-        with_open(|open| self.walk(Portable, ray, query, probe, open))
+        with_open(|open| Portable.run(One { tree: self, ray, query, probe, open }))
     }
 
     /// The blocks from a place on.
@@ -123,11 +124,20 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        // One ray has nobody to take turns with, and in an empty scene there is nothing to wait for.
-        if rays.len() == 1 || self.root == Child::NONE {
-            return one_by_one(&self.geometry, rays, hits, cancel, |ray| self.trace_one(ray, query, &mut Off));
+        // One ray has nobody to go with.
+        if let ([ray], [hit]) = (rays, &mut *hits) {
+            cancel.check()?;
+            let mut traced = Traced::default();
+            *hit = in_scaled_space(&self.geometry, ray, &mut traced, |ray| Ok(self.one(ray, query, &mut Off)))?;
+            return Ok(traced);
         }
-        with_under_way(|under_way| self.road.run(Batch { tree: self, rays, query, hits, cancel, under_way }))
+        if self.root == Child::NONE {
+            return one_by_one(&self.geometry, rays, hits, cancel, |_| None);
+        }
+        with_under_way(|under_way| match self.road.run_wide(Batch { tree: self, rays, query, hits, cancel, under_way }) {
+            Ok(traced) => traced,
+            Err(Batch { hits, .. }) => one_by_one(&self.geometry, rays, hits, cancel, |ray| self.plainly(ray, query, &mut Off)),
+        })
     }
 
     fn trace_plain<Q: Query>(

@@ -98,13 +98,7 @@ pub trait TriTest: Copy + Send + Sync + 'static {
         interval: [S::F; 2],
         corners: &[Points<S::F>; 3],
     ) -> Hits<S> {
-        let meets = Self::meet_eight(s, own, corners);
-        let (entry, exit) = slabs.intervals(s, &boxes_of(s, corners));
-        // An empty interval holds no t.
-        let t = s.min(exit, s.max(entry, meets.t));
-        let [tmin, tmax] = interval;
-        let inside = s.and(s.le(entry, exit), s.and(s.le(tmin, t), s.le(t, tmax)));
-        Hits { hit: s.and(meets.met, inside), doubt: meets.doubt(s), t, u: meets.u, v: meets.v }
+        Self::meet_eight(s, own, corners).inside(s, slabs, interval, corners)
     }
 
     /// The whole test, by the rule above.
@@ -133,6 +127,23 @@ pub struct Meets<S: Simd> {
 }
 
 impl<S: Simd> Meets<S> {
+    /// Whether any may be.
+    #[inline(always)]
+    pub fn any(&self, s: S) -> bool {
+        s.bits(self.met) | self.doubt(s) != 0
+    }
+
+    /// Those that are hit: see [`TriTest::hit_eight`].
+    #[inline(always)]
+    pub fn inside(&self, s: S, slabs: &EightSlabs<S::F>, interval: [S::F; 2], corners: &[Points<S::F>; 3]) -> Hits<S> {
+        let (entry, exit) = slabs.intervals(s, &boxes_of(s, corners));
+        // An empty interval holds no t.
+        let t = s.min(exit, s.max(entry, self.t));
+        let [tmin, tmax] = interval;
+        let inside = s.and(s.le(entry, exit), s.and(s.le(tmin, t), s.le(t, tmax)));
+        Hits { hit: s.and(self.met, inside), doubt: self.doubt(s), t, u: self.u, v: self.v }
+    }
+
     #[inline(always)]
     fn doubt(&self, s: S) -> u32 {
         match self.doubt {
