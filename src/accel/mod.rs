@@ -91,8 +91,16 @@ const RAYS_PER_CHECK: usize = 64;
 pub struct Traced {
     /// Rays that are not valid (see [`Ray::is_valid`]): they miss.
     pub invalid: u64,
-    /// Rays that were traced with neighbours as one.
+    /// Rays that were traced with seven neighbours as one, since they go the same way.
     pub in_beams: u64,
+}
+
+impl std::ops::Add for Traced {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { invalid: self.invalid + other.invalid, in_beams: self.in_beams + other.in_beams }
+    }
 }
 
 /// A built structure, whatever its kind.

@@ -12,7 +12,7 @@ use super::output::{OutFile, print, print_json};
 use super::structures::{BuildArgs, One};
 use super::table::facts;
 use super::{bar, hits, npy};
-use crate::accel::{Accel, Hit, Mode};
+use crate::accel::{Accel, Hit, Mode, Traced};
 use crate::geometry::Ray;
 use crate::lab::format::{count, duration, rate};
 use crate::lab::{MachineFacts, SceneFacts};
@@ -55,6 +55,7 @@ struct Outcome {
     hits: usize,
     /// Rays that hit nothing because they are no rays: not finite, no direction, a wrong interval.
     invalid: u64,
+    in_beams: u64,
     secs: f64,
     mrays_per_sec: f64,
 }
@@ -73,7 +74,8 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let mut found = vec![None; rays.len()];
     let progress = Progress::new();
     let start = Instant::now();
-    let invalid = bar::watch("trace", &progress, || trace(built.accel.as_ref(), &rays, mode, &mut found, &cx, &progress))?;
+    let Traced { invalid, in_beams } =
+        bar::watch("trace", &progress, || trace(built.accel.as_ref(), &rays, mode, &mut found, &cx, &progress))?;
     let secs = start.elapsed().as_secs_f64();
     out.write(&cx.cancel, |file| hits::write(&found, mode, &model.geometry, file))?;
     let outcome = Outcome {
@@ -86,13 +88,14 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         rays: rays.len(),
         hits: found.iter().filter(|hit| hit.is_some()).count(),
         invalid,
+        in_beams,
         secs,
         mrays_per_sec: rays.len() as f64 / secs * 1e-6,
     };
     if args.json { print_json(&outcome) } else { print(&text(&outcome)) }
 }
 
-/// Traces all rays; returns how many are invalid.
+/// Traces all rays.
 fn trace(
     accel: &dyn Accel,
     rays: &[Ray],
@@ -100,15 +103,16 @@ fn trace(
     hits: &mut [Option<Hit>],
     cx: &Context,
     progress: &Progress,
-) -> Result<u64, Cancelled> {
+) -> Result<Traced, Cancelled> {
     const CHUNK: usize = 4096;
     progress.start("trace", rays.len() as u64);
     let chunk = |(rays, hits): (&[Ray], &mut [Option<Hit>])| {
         let traced = accel.trace(rays, mode, hits, &cx.cancel)?;
         progress.advance(rays.len() as u64);
-        Ok(traced.invalid)
+        Ok(traced)
     };
-    cx.pool.run(|| rays.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK)).map(chunk).try_reduce(|| 0, |a, b| Ok(a + b)))
+    cx.pool
+        .run(|| rays.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK)).map(chunk).try_reduce(Traced::default, |a, b| Ok(a + b)))
 }
 
 fn text(outcome: &Outcome) -> String {
@@ -117,6 +121,7 @@ fn text(outcome: &Outcome) -> String {
         ("rays", count(outcome.rays as u64)),
         ("hits", count(outcome.hits as u64)),
         ("invalid", count(outcome.invalid)),
+        ("in beams", count(outcome.in_beams)),
         ("trace", format!("{}, {}", duration(outcome.secs), rate(outcome.mrays_per_sec * 1e6))),
     ])
 }

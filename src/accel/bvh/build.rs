@@ -13,6 +13,7 @@ use super::preset::Builder;
 use super::reinsertion::{self, Patience};
 use super::sbvh::{self, Sbvh, Work};
 use super::slice::{Heuristic, InPlace, Slice};
+use super::subtree::Subtree;
 use super::sweep::Sweep;
 use super::topdown::{self, Limits};
 use super::tree::{Built, MAX_DEPTH, Node, Packed};
@@ -134,7 +135,7 @@ impl Plan {
         cx.progress.start("split", prims.len() as u64);
         let limits = self.build_limits();
         let binned = Binned { bins: self.bins, costs: self.costs };
-        let draft = match self.builder {
+        let tree = match self.builder {
             Builder::Median => in_place(ObjectMedian, &mut prims, limits, cx),
             Builder::Midpoint => in_place(SpatialMiddle, &mut prims, limits, cx),
             Builder::Binned => in_place(binned, &mut prims, limits, cx),
@@ -146,14 +147,17 @@ impl Plan {
             Builder::Sbvh => {
                 let root_area = prims.iter().fold(Bounds::EMPTY, |b, p| b.union(p.bounds())).half_area();
                 let sbvh = Sbvh { geometry, binned, costs: self.costs, alpha: self.alpha, root_area };
-                cx.pool.run(|| topdown::build(&sbvh, Work::new(prims, self.allowance), limits, cx))
+                cx.pool.run(|| topdown::build(&sbvh, Work::new(std::mem::take(&mut prims), self.allowance), limits, cx))
             }
             Builder::Lbvh => {
                 let codes = morton::sorted(&prims, cx)?;
                 cx.pool.run(|| topdown::build(&Curve { boxes: &prims }, &codes[..], limits, cx))
             }
-            Builder::Ploc => cx.pool.run(|| ploc::build(&prims, self.radius, cx)),
+            Builder::Ploc => cx.pool.run(|| ploc::build(&prims, self.radius, cx)).map(Subtree::List),
         }?;
+        // Before the nodes exist twice.
+        drop(prims);
+        let draft = tree.joined();
         if !self.needs_leaves() {
             return Ok(draft);
         }
@@ -178,6 +182,11 @@ impl Plan {
     }
 }
 
-fn in_place(heuristic: impl Heuristic + Send, prims: &mut [PrimBox], limits: Limits, cx: &BuildCx) -> Result<Draft, BuildError> {
+fn in_place(
+    heuristic: impl Heuristic + Send,
+    prims: &mut [PrimBox],
+    limits: Limits,
+    cx: &BuildCx,
+) -> Result<Subtree, BuildError> {
     cx.pool.run(|| topdown::build(&InPlace::new(heuristic), Slice::new(prims), limits, cx))
 }

@@ -29,7 +29,7 @@ impl Draft {
 
     /// What [`Self::arranged`] takes beside both drafts.
     pub const fn arranging_bytes(triangles: usize) -> usize {
-        2 * triangles * size_of::<Summary>()
+        2 * triangles * (size_of::<Summary>() + size_of::<f64>())
     }
 
     /// The packed triangles in the order of the leaves.
@@ -39,14 +39,14 @@ impl Draft {
 
     /// The SAH cost once leaves are collapsed, times the root's area.
     pub fn cost(&self, costs: &Costs, max_leaf: u32, cx: &BuildCx) -> Result<f64, BuildError> {
-        Ok(summaries(self, costs, max_leaf, cx)?.first().map_or(0.0, |root| root.cost))
+        Ok(summaries(self, costs, max_leaf, cx)?.1)
     }
 
     /// Brings a tree of any builder into the order of a walk, within the limits. Nodes become leaves
     /// where that is cheaper: decided from the leaves up, so no other choice of leaves costs less.
     pub fn arranged(self, geometry: &Geometry, costs: &Costs, limits: Limits, cx: &BuildCx) -> Result<Self, BuildError> {
         cx.progress.start("arrange", self.refs.len() as u64);
-        let summaries = summaries(&self, costs, limits.max_leaf, cx)?;
+        let (summaries, _) = summaries(&self, costs, limits.max_leaf, cx)?;
         let arranger = Arranger { from: &self, summaries: &summaries, geometry, limits, cx };
         let arranged = cx.pool.run(|| arranger.subtree(0, 0))?;
         // The nodes are to exist no more than twice.
@@ -58,39 +58,42 @@ impl Draft {
 /// What is below a node, once leaves are collapsed.
 #[derive(Clone, Copy, Default)]
 struct Summary {
-    /// The SAH cost of it all, times the root's area.
-    cost: f64,
     triangles: u32,
     /// Steps to the deepest leaf, saturating.
     height: u8,
     is_leaf: bool,
 }
 
-/// From the last node to the first, so that children come before their parent.
-fn summaries(draft: &Draft, costs: &Costs, max_leaf: u32, cx: &BuildCx) -> Result<Vec<Summary>, BuildError> {
+/// Of all nodes, and the SAH cost of the tree times the root's area. From the last node to the first, so
+/// that children come before their parent.
+fn summaries(draft: &Draft, costs: &Costs, max_leaf: u32, cx: &BuildCx) -> Result<(Vec<Summary>, f64), BuildError> {
     let mut summaries = vec![Summary::default(); draft.nodes.len()];
+    let mut cost = vec![0.0; draft.nodes.len()];
     for at in (0..draft.nodes.len()).rev() {
         if at.is_multiple_of(1 << 14) {
             cx.cancel.check()?;
         }
         let node = &draft.nodes[at];
         let area = node.bounds().area();
-        summaries[at] = match node.left() {
+        (summaries[at], cost[at]) = match node.left() {
             None => {
                 let triangles = node.count();
-                Summary { cost: costs.triangles(area, triangles as usize), triangles, height: 0, is_leaf: true }
+                (Summary { triangles, height: 0, is_leaf: true }, costs.triangles(area, triangles as usize))
             }
             Some(left) => {
-                let (a, b) = (summaries[left as usize], summaries[left as usize + 1]);
+                let (left, right) = (left as usize, left as usize + 1);
+                let (a, b) = (summaries[left], summaries[right]);
                 let triangles = a.triangles + b.triangles;
-                let (inner, leaf) = (costs.c_trav * area + a.cost + b.cost, costs.triangles(area, triangles as usize));
+                let inner = costs.c_trav * area + cost[left] + cost[right];
+                let leaf = costs.triangles(area, triangles as usize);
                 let is_leaf = triangles <= max_leaf && leaf <= inner;
                 let height = if is_leaf { 0 } else { a.height.max(b.height).saturating_add(1) };
-                Summary { cost: if is_leaf { leaf } else { inner }, triangles, height, is_leaf }
+                (Summary { triangles, height, is_leaf }, if is_leaf { leaf } else { inner })
             }
         };
     }
-    Ok(summaries)
+    let whole = cost.first().copied().unwrap_or(0.0);
+    Ok((summaries, whole))
 }
 
 struct Arranger<'a> {
@@ -196,7 +199,7 @@ impl Arranger<'_> {
         let boxed = |prim: PrimRef| PrimBox::new(&Bounds::from(&Aabb::of_triangle(&self.geometry.corners(prim))), prim);
         let mut prims: Vec<PrimBox> = list.refs.drain(first..).map(boxed).collect();
         let limits = Limits { max_depth: self.limits.max_depth - depth, ..self.limits };
-        let built = topdown::build(&InPlace::new(ObjectMedian), Slice::new(&mut prims), limits, self.cx)?;
+        let built = topdown::build(&InPlace::new(ObjectMedian), Slice::new(&mut prims), limits, self.cx)?.joined();
         let by = num::index(list.nodes.len() - 1);
         list.nodes[to] = built.nodes[0].moved(by, num::index(first));
         list.nodes.extend(built.nodes[1..].iter().map(|node| node.moved(by, num::index(first))));

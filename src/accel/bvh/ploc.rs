@@ -28,7 +28,9 @@ pub fn build(boxes: &[PrimBox], radius: usize, cx: &BuildCx) -> Result<Draft, Bu
     let prim = |i: usize| &boxes[order[i].1 as usize];
     let mut clusters = in_chunks(order.len(), cx, |i| Node::leaf(&prim(i).bounds().aabb(), num::index(i), 1))?;
     let refs = in_chunks(order.len(), cx, |i| prim(i).prim())?;
-    let mut nodes = in_chunks(2 * order.len() - 1, cx, |_| clusters[0])?;
+    // Before the nodes are there, too.
+    drop(order);
+    let mut nodes = in_chunks(2 * refs.len() - 1, cx, |_| clusters[0])?;
     // Pairs are written from the end towards the root, so that children come after their parent.
     let mut free = nodes.len();
     while clusters.len() > 1 {

@@ -37,6 +37,9 @@ impl Subtree {
     /// Copies the forks and lists into one: a node first, then what is below its left child, then what
     /// is below its right one.
     pub fn joined(self) -> Draft {
+        if let Self::List(list) = self {
+            return list;
+        }
         let (node_count, ref_count) = self.sizes();
         let (mut nodes, mut refs) = (Vec::with_capacity(node_count), Vec::with_capacity(ref_count));
         nodes.push(PLACE);

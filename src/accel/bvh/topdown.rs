@@ -59,13 +59,12 @@ impl Limits {
 /// Triangles below which a subtree is built by one thread.
 const FORK: usize = 4096;
 
-/// Builds over some triangles, at least one; called on the pool.
+/// Builds over some triangles, at least one; called on the pool. What is left to do is to join the lists.
 ///
 /// # Errors
 /// Cancelled, or what the divider says.
-pub fn build<D: Divide>(divider: &D, work: D::Work, limits: Limits, cx: &BuildCx) -> Result<Draft, BuildError> {
-    let builder = Builder { divider, limits, cx };
-    Ok(builder.subtree(work, 0)?.joined())
+pub fn build<D: Divide>(divider: &D, work: D::Work, limits: Limits, cx: &BuildCx) -> Result<Subtree, BuildError> {
+    Builder { divider, limits, cx }.subtree(work, 0)
 }
 
 struct Builder<'a, D> {
@@ -81,6 +80,8 @@ impl<D: Divide> Builder<'_, D> {
             let mut list = Draft { nodes: Vec::with_capacity(2 * count), refs: Vec::with_capacity(count) };
             list.nodes.push(PLACE);
             self.fill(&mut list, 0, work, depth)?;
+            // Leaves of several triangles leave room.
+            list.nodes.shrink_to_fit();
             return Ok(Subtree::List(list));
         }
         match self.divide(work, depth)? {

@@ -11,7 +11,7 @@ use std::cell::RefCell;
 use super::beam::Beam;
 use super::child::Child;
 use super::leaf::Pack;
-use super::node::{Met, Node};
+use super::node::Node;
 use super::open::Open;
 use super::tree::Tree;
 use super::way::{Rest, Way};
@@ -19,7 +19,7 @@ use crate::accel::probe::Off;
 use crate::accel::{Hit, Query, Traced};
 use crate::geometry::tri::{TriTest, corners, splat_own};
 use crate::geometry::{EightSlabs, Ray};
-use crate::simd::{Kernel, LANES, Simd};
+use crate::simd::{Kernel, Simd};
 use crate::task::{Cancel, Cancelled};
 
 /// Rays on their way at a time: what they need fits the first level of the cache together with what they
@@ -151,7 +151,6 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
         let (units, whose) = (&tree.units[..], tree.geometry.whose());
         let (mut lists, mut beam_lists) = (Lists::<RAYS>::new(), Lists::<BEAMS>::new());
         let mut rest = Rest::new(&tree.geometry, rays);
-        let (mut entries, mut slots) = ([[0.0; LANES]; RAYS], [0; RAYS]);
         let mut rounds = 0usize;
         loop {
             if rounds.is_multiple_of(ROUNDS_PER_CHECK) {
@@ -180,19 +179,13 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
             if idle == RAYS && idle_beams == BEAMS {
                 return Ok(rest.traced);
             }
+            // What comes next is looked up in a loop of its own: by then it is known for all of them.
             let nodes = lists.take(Child::NODE);
             for i in 0..nodes {
                 let (child, ray) = lists.get(Child::NODE, i);
-                let way = &ways[ray];
-                let met = Node::at(units, child.place()).meet(s, &way.slabs(), way.best.tmin(), way.best.t());
-                s.store(met.entry, &mut entries[i % RAYS]);
-                slots[i % RAYS] = met.slots;
-            }
-            for i in 0..nodes {
-                let (child, ray) = lists.get(Child::NODE, i);
-                let way = &mut ways[ray];
-                let met = Met { slots: slots[i % RAYS], entry: s.load(&entries[i % RAYS]) };
-                way.last = way.open.replace(s, way.last, Node::at(units, child.place()), &met, way.order());
+                let (way, node) = (&mut ways[ray], Node::at(units, child.place()));
+                let met = node.meet(s, &way.slabs(), way.best.tmin(), way.best.t());
+                way.last = way.open.replace(s, way.last, node, &met, way.order());
             }
             for i in 0..nodes {
                 let (_, ray) = lists.get(Child::NODE, i);

@@ -62,18 +62,23 @@ pub fn build<T, B: Pack>(
     cx: &BuildCx,
 ) -> Result<Tree<T, B>, BuildError> {
     let Drafted { draft, splits, remarks, peak } = drafted;
-    let (mut whole, mut root) = (Packed::default(), Child::NONE);
-    if !draft.nodes.is_empty() {
+    let parts = if draft.nodes.is_empty() {
+        None
+    } else {
         let costs =
             Costs { node: 1.0, block: p.float("c_block") as f32, max_leaf: p.int("wide_leaf") as u8, per_block: B::USUAL };
         cx.progress.start("collapse", draft.nodes.len() as u64);
         let _charge = cx.budget.charge(Collapse::bytes(draft.nodes.len()) as u64).map_err(too_large)?;
         let collapse = Collapse::of(&draft, &costs, cx)?;
         cx.progress.start("pack", draft.refs.len() as u64);
-        let packer = Packer { geometry, draft: &draft, collapse: &collapse, cx };
-        root = packer.pack::<B>(&mut whole)?;
-    }
+        Some(Packer { geometry, draft: &draft, collapse: &collapse, cx }.pack::<B>()?)
+    };
+    // Before the parts exist twice.
     drop((draft, peak));
+    let (whole, root) = match parts {
+        Some(parts) => parts.together(cx)?,
+        None => (Packed::default(), Child::NONE),
+    };
     let bytes = whole.units.capacity() * unit::BYTES;
     let charge = cx.budget.charge(bytes as u64).map_err(too_large)?;
     let geometry = Arc::clone(geometry);
@@ -127,6 +132,49 @@ struct Part {
     slot: Option<(u32, usize)>,
 }
 
+/// All parts, packed, and the nodes above them.
+struct Parts {
+    upper: Packed,
+    below: Vec<Below>,
+}
+
+/// A part, whose slot it is, and what refers to it.
+struct Below {
+    slot: Option<(u32, usize)>,
+    list: Packed,
+    root: Child,
+}
+
+impl Parts {
+    /// One list of all, and its root.
+    fn together(self, cx: &BuildCx) -> Result<(Packed, Child), BuildError> {
+        let Self { mut upper, below } = self;
+        let units = upper.units.len() + below.iter().map(|part| part.list.units.len()).sum::<usize>();
+        if units > MAX_UNITS {
+            return Err(BuildError::TooMany {
+                structure: ID,
+                what: "units of 32 bytes",
+                limit: MAX_UNITS as u64,
+                remedy: "Use a smaller model.",
+            });
+        }
+        let _twice = cx.budget.charge((2 * units * unit::BYTES) as u64).map_err(too_large)?;
+        let mut whole = Packed { units: list_in_large_pages(units), nodes: upper.nodes };
+        whole.units.append(&mut upper.units);
+        let mut root = Child::node(0);
+        for Below { slot, mut list, root: child } in below {
+            let child = list.moved(child, num::index(whole.units.len()));
+            whole.refer(slot, child);
+            if slot.is_none() {
+                root = child;
+            }
+            whole.units.append(&mut list.units);
+            whole.nodes += list.nodes;
+        }
+        Ok((whole, root))
+    }
+}
+
 struct Packer<'a> {
     geometry: &'a Geometry,
     draft: &'a bvh::Draft,
@@ -137,7 +185,8 @@ struct Packer<'a> {
 impl Packer<'_> {
     /// The upper nodes first, until there are parts enough for all threads; then the parts, side by
     /// side.
-    fn pack<B: Pack>(&self, whole: &mut Packed) -> Result<Child, BuildError> {
+    fn pack<B: Pack>(&self) -> Result<Parts, BuildError> {
+        let mut upper = Packed::default();
         let mut open = std::collections::VecDeque::from([Part { from: 0, slot: None }]);
         let mut parts = Vec::new();
         while let Some(part) = open.pop_front() {
@@ -146,42 +195,19 @@ impl Packer<'_> {
                 continue;
             }
             let slots = self.slots(part.from);
-            let place = whole.push_node(&slots);
-            whole.refer(part.slot, Child::node(place));
+            let place = upper.push_node(&slots);
+            upper.refer(part.slot, Child::node(place));
             let used = slots.iter().enumerate().filter(|(_, (child, _))| *child != Child::NONE);
             open.extend(used.map(|(slot, (child, _))| Part { from: child.place(), slot: Some((place, slot)) }));
         }
         let pack = |part: &Part| {
             let mut list = Packed::default();
-            self.child::<B>(part.from, &mut list, &mut Vec::new()).map(|root| (list, root))
+            let root = self.child::<B>(part.from, &mut list, &mut Vec::new())?;
+            list.units.shrink_to_fit();
+            Ok(Below { slot: part.slot, list, root })
         };
-        let packed: Result<Vec<_>, _> = self.cx.pool.run(|| parts.par_iter().map(pack).collect());
-        let packed: Vec<(Packed, Child)> = packed?;
-        let units = whole.units.len() + packed.iter().map(|(list, _)| list.units.len()).sum::<usize>();
-        if units > MAX_UNITS {
-            return Err(BuildError::TooMany {
-                structure: ID,
-                what: "units of 32 bytes",
-                limit: MAX_UNITS as u64,
-                remedy: "Use a smaller model.",
-            });
-        }
-        // The parts exist twice while they are put together.
-        let _twice = self.cx.budget.charge((units * unit::BYTES) as u64).map_err(too_large)?;
-        let mut all = list_in_large_pages(units);
-        all.append(&mut whole.units);
-        whole.units = all;
-        let mut root = Child::node(0);
-        for (part, (mut list, child)) in parts.iter().zip(packed) {
-            let child = list.moved(child, num::index(whole.units.len()));
-            whole.refer(part.slot, child);
-            if part.slot.is_none() {
-                root = child;
-            }
-            whole.units.append(&mut list.units);
-            whole.nodes += list.nodes;
-        }
-        Ok(root)
+        let below: Result<Vec<_>, BuildError> = self.cx.pool.run(|| parts.par_iter().map(pack).collect());
+        Ok(Parts { upper, below: below? })
     }
 
     /// The children of a node in their slots, by their numbers in the binary tree.

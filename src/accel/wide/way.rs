@@ -106,10 +106,12 @@ impl Way {
     /// Writes what was found.
     #[inline(always)]
     pub fn end(&self, whose: &Whose<'_>, hits: &mut [Option<Hit>]) {
-        hits[self.at] = self.best.found().map(|found| {
+        hits[self.at] = if let Some(found) = self.best.found() {
             let (instance, primitive) = whose.locate(found.prim);
-            Hit { t: self.back.world_t(found.t), u: found.u, v: found.v, instance, primitive }
-        });
+            Some(Hit { t: self.back.world_t(found.t), u: found.u, v: found.v, instance, primitive })
+        } else {
+            None
+        };
     }
 }
 

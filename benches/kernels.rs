@@ -1,0 +1,178 @@
+//! What rays spend their time in, by itself: eight boxes, eight triangles, one triangle and eight rays, each on
+//! every road; and the loop over all triangles with nobody who watches beside the same loop written out.
+
+use std::hint::black_box;
+use std::sync::Arc;
+
+use boxwood::accel::{Accel, BuildCx, Hit, Mode, registry};
+use boxwood::geometry::eight::Rays;
+use boxwood::geometry::slabs::Boxes;
+use boxwood::geometry::tri::{Block, Eight, Fast, TestKind, TriTest, Watertight, corners, splat_own};
+use boxwood::geometry::{EightSlabs, Ray};
+use boxwood::scene::{self, Geometry, LoadCx};
+use boxwood::simd::{Kernel, LANES, Portable, Road, Simd};
+use boxwood::task::Cancel;
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use glam::Vec3;
+
+const MODEL: &str = "builtin:soup?triangles=5000";
+
+fn geometry() -> Arc<Geometry> {
+    let cx = LoadCx::unattended();
+    let scene = scene::open(MODEL, &cx).expect("made in code");
+    Arc::new(Geometry::new(&scene, &cx).expect("small"))
+}
+
+/// From all around to the middle, in the world.
+fn rays(geometry: &Geometry) -> Vec<Ray> {
+    let b = geometry.world_bounds();
+    let (centre, size) = (b.centre(), (b.max - b.min).max_element());
+    (0..256u16)
+        .map(|i| {
+            let a = f32::from(i) * 2.399_963;
+            let from = centre + size * Vec3::new(a.cos(), (a * 0.7).sin(), a.sin());
+            Ray::new(from, centre + 0.2 * size * Vec3::new((a * 3.0).sin(), (a * 5.0).cos(), (a * 7.0).sin()) - from)
+        })
+        .collect()
+}
+
+fn blocks(geometry: &Geometry) -> Vec<Block> {
+    let triangles: Vec<_> = (0..geometry.live_count()).map(|i| geometry.corners(geometry.live(i))).collect();
+    triangles.chunks(LANES).map(|eight| Block::new(eight.iter().copied())).collect()
+}
+
+/// How many of the boxes of all triangles each ray meets.
+struct MeetBoxes<'a>(&'a [Fast], &'a [Block]);
+
+impl Kernel for MeetBoxes<'_> {
+    type Out = u32;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> u32 {
+        let mut met = 0;
+        for test in self.0 {
+            let slabs = EightSlabs::splat(s, test.slabs());
+            for block in self.1 {
+                // Boxes as nodes have them: loaded, not worked out.
+                let of = corners(s, block, [0, 1, 2]);
+                let (entry, exit) = slabs.intervals(s, &Boxes { min: of[0], max: of[1] });
+                met += s.bits(s.le(entry, exit)).count_ones();
+            }
+        }
+        met
+    }
+}
+
+/// How many triangles each ray hits, eight triangles at a time.
+struct HitBlocks<'a, T>(&'a [T], &'a [Block]);
+
+impl<T: TriTest> Kernel for HitBlocks<'_, T> {
+    type Out = u32;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> u32 {
+        let mut hits = 0;
+        let interval = [s.splat(0.0), s.splat(f32::INFINITY)];
+        for test in self.0 {
+            let axes = test.axes();
+            let (own, slabs) = (splat_own(s, &test.own()), EightSlabs::splat(s, &test.slabs().in_order(axes)));
+            for block in self.1 {
+                let found = T::hit_eight(s, &own, &slabs, interval, &corners(s, block, axes));
+                hits += s.bits(found.hit).count_ones();
+            }
+        }
+        hits
+    }
+}
+
+/// How many rays hit each triangle, eight rays at a time; all in the world's scale.
+struct HitByEight<'a>(&'a [Ray], &'a Geometry);
+
+impl Kernel for HitByEight<'_> {
+    type Out = u32;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> u32 {
+        let mut hits = 0;
+        for eight in self.0.chunks_exact(LANES) {
+            let Some(eight) = eight.first_chunk() else { continue };
+            let rays = Rays::load(s, eight);
+            let (own, slabs) = (Fast::own_of_eight(s, &rays), EightSlabs::new(s, &rays, self.1.bounds()));
+            for i in 0..self.1.live_count() {
+                let block = Block::new([self.1.corners(self.1.live(i)); LANES]);
+                let of = corners(s, &block, [0, 1, 2]);
+                let found = Fast::hit_eight(s, &own, &slabs, [rays.tmin, rays.tmax], &of);
+                hits += s.bits(found.hit).count_ones();
+            }
+        }
+        hits
+    }
+}
+
+fn kernels(criterion: &mut Criterion) {
+    let geometry = geometry();
+    let (rays, blocks) = (rays(&geometry), blocks(&geometry));
+    let local: Vec<Ray> = rays.iter().map(|ray| geometry.space().enter(ray).ray).collect();
+    let fast: Vec<Fast> = local.iter().map(|ray| Fast::prepare(ray, geometry.bounds())).collect();
+    let watertight: Vec<Watertight> = local.iter().map(|ray| Watertight::prepare(ray, geometry.bounds())).collect();
+    let mut group = criterion.benchmark_group("kernels");
+    group.sample_size(10).throughput(Throughput::Elements((rays.len() * blocks.len() * LANES) as u64));
+    for road in Road::all() {
+        let id = road.id();
+        group.bench_function(format!("boxes/{id}"), |b| b.iter(|| road.run(MeetBoxes(black_box(&fast), &blocks))));
+        group.bench_function(format!("fast/{id}"), |b| b.iter(|| road.run(HitBlocks(black_box(&fast), &blocks))));
+        let all = HitBlocks::<Watertight>;
+        group.bench_function(format!("watertight/{id}"), |b| b.iter(|| road.run(all(black_box(&watertight), &blocks))));
+        group.bench_function(format!("eight rays/{id}"), |b| b.iter(|| road.run(HitByEight(black_box(&local), &geometry))));
+    }
+    group.finish();
+}
+
+/// The loop of `brute` written out: no probe, no query, no tie to ask about in a soup.
+fn by_hand(geometry: &Geometry, blocks: &[Block], rays: &[Ray], hits: &mut [Option<Hit>]) {
+    for (ray, hit) in rays.iter().zip(hits) {
+        let entered = geometry.space().enter(ray);
+        let test = Watertight::prepare(&entered.ray, geometry.bounds());
+        let mut best = None;
+        let mut end = entered.ray.tmax;
+        for (b, block) in blocks.iter().enumerate() {
+            let mut left = test.may_meet(Portable, block);
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
+                if b * LANES + lane < geometry.live_count()
+                    && let Some(found) = test.hit(&block.triangle(lane), entered.ray.tmin, end)
+                {
+                    end = found.t;
+                    best = Some((found, geometry.live(b * LANES + lane)));
+                }
+            }
+        }
+        *hit = best.map(|(found, prim)| {
+            let (instance, primitive) = geometry.locate(prim);
+            Hit { t: entered.back.world_t(found.t), u: found.u, v: found.v, instance, primitive }
+        });
+    }
+}
+
+fn off(criterion: &mut Criterion) {
+    let geometry = geometry();
+    let (rays, blocks) = (rays(&geometry), blocks(&geometry));
+    let brute = registry::find("brute").expect("registered");
+    let brute = brute.build(&geometry, TestKind::Watertight, &brute.defaults(), &BuildCx::unattended(1)).expect("small");
+    let trace = |accel: &dyn Accel, hits: &mut [Option<Hit>]| {
+        accel.trace(black_box(&rays), Mode::Closest, hits, &Cancel::new()).expect("not cancelled");
+    };
+    let (mut a, mut b) = (vec![None; rays.len()], vec![None; rays.len()]);
+    trace(&*brute, &mut a);
+    by_hand(&geometry, &blocks, &rays, &mut b);
+    assert_eq!(a, b, "both find the same");
+    let mut group = criterion.benchmark_group("off");
+    group.sample_size(10).throughput(Throughput::Elements((rays.len() * geometry.live_count()) as u64));
+    group.bench_function("probe off", |bench| bench.iter(|| trace(&*brute, &mut a)));
+    group.bench_function("by hand", |bench| bench.iter(|| by_hand(&geometry, &blocks, black_box(&rays), &mut b)));
+    group.finish();
+}
+
+criterion_group!(benches, kernels, off);
+criterion_main!(benches);
