@@ -157,8 +157,8 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
                 cancel.check()?;
             }
             rounds += 1;
-            // Begin.
-            loop {
+            // Others begin; no more than that between two looks at the flag.
+            for _ in 0..RAYS {
                 while let Some(idle) = lists.idle()
                     && let Some(ready) = rest.take()
                 {
@@ -176,7 +176,7 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
                 }
             }
             let (idle, idle_beams) = (lists.lens[Child::NOTHING], beam_lists.lens[Child::NOTHING]);
-            if idle == RAYS && idle_beams == BEAMS {
+            if idle == RAYS && idle_beams == BEAMS && rest.is_done() {
                 return Ok(rest.traced);
             }
             // What comes next is looked up in a loop of its own: by then it is known for all of them.

@@ -109,6 +109,21 @@ fn patches_give_the_hits_of_brute_force_on_every_road() {
 }
 
 #[test]
+fn rays_that_are_not_valid_are_counted_however_many_there_are() {
+    let geometry = geometry("builtin:teapot");
+    let built = build::<Watertight>(&geometry, &params(&[]), &BuildCx::unattended(1)).expect("small");
+    let mut rays = vec![Ray::new(Vec3::ZERO, Vec3::ZERO); 5000];
+    rays[4321] = Ray::new(geometry.world_bounds().centre() + Vec3::splat(50.0), Vec3::splat(-1.0));
+    let mut hits = vec![Some(Hit { t: 0.0, u: 0.0, v: 0.0, instance: 0, primitive: 0 }); rays.len()];
+    let traced = built.trace(&rays, Mode::Closest, &mut hits, &Cancel::new()).expect("not cancelled");
+    assert_eq!((traced.invalid, traced.in_beams), (4999, 0));
+    assert_eq!(hits.iter().flatten().count(), usize::from(trace(&*built, &rays[4321..4322], Mode::Closest)[0].is_some()));
+    let cancelled = Cancel::new();
+    cancelled.cancel();
+    assert!(built.trace(&rays, Mode::Closest, &mut hits, &cancelled).is_err());
+}
+
+#[test]
 fn plain_leaves_give_the_hits_of_brute_force_on_every_road() {
     equals_brute::<Watertight, Plain>("builtin:menger", &[], TestKind::Watertight);
     equals_brute::<Fast, Plain>("builtin:hair?triangles=20000", &[("wide_leaf", "20")], TestKind::Fast);

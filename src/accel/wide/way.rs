@@ -173,6 +173,11 @@ impl<'a> Rest<'a> {
         self.left == 0 && self.next < self.rays.len()
     }
 
+    /// Whether all were made ready and taken.
+    pub const fn is_done(&self) -> bool {
+        self.left == 0 && self.next == self.rays.len()
+    }
+
     /// Makes the next eight ready, or begins a beam with them: whether it was that.
     #[inline(always)]
     pub fn prepare<T: TriTest, S: Simd>(&mut self, s: S, hits: &mut [Option<Hit>], beam: &mut Beam, root: Child) -> bool {
