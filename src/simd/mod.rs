@@ -151,7 +151,7 @@ impl Road {
     }
 
     /// Runs a kernel that is for eight lanes side by side, many of them at a time; gives it back on the plain
-    /// road, where it would gain nothing and takes minutes to compile.
+    /// road, where such kernels take minutes to compile.
     #[inline]
     pub fn run_wide<K: Kernel>(self, kernel: K) -> Result<K::Out, K> {
         match self {
