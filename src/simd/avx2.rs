@@ -95,12 +95,6 @@ impl Simd for Avx2 {
     }
 
     #[inline(always)]
-    fn load_bytes(self, from: &[u8; LANES]) -> __m256 {
-        // SAFETY: the reference is to the 8 bytes that are loaded.
-        unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(from.as_ptr().cast()))) }
-    }
-
-    #[inline(always)]
     fn add(self, a: __m256, b: __m256) -> __m256 {
         // SAFETY: as in `run`.
         unsafe { _mm256_add_ps(a, b) }

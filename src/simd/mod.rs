@@ -64,8 +64,6 @@ pub trait Simd: Copy + Send + Sync + 'static {
     fn sub_bits(self, a: Self::F, b: Self::F) -> Self::F;
     /// The bits that both have.
     fn and_bits(self, a: Self::F, b: Self::F) -> Self::F;
-    /// Eight bytes as floats: 0 to 255, exact.
-    fn load_bytes(self, from: &[u8; LANES]) -> Self::F;
     /// The sum.
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
     /// The difference.

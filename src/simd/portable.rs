@@ -81,11 +81,6 @@ impl Simd for Portable {
     }
 
     #[inline(always)]
-    fn load_bytes(self, from: &[u8; LANES]) -> Lanes {
-        from.map(f32::from)
-    }
-
-    #[inline(always)]
     fn add(self, a: Lanes, b: Lanes) -> Lanes {
         each(|i| a[i] + b[i])
     }

@@ -23,7 +23,6 @@ impl Kernel for Everything {
             s.min(a, b),
             s.max(a, b),
             s.splat(self.0[0][3]),
-            s.load_bytes(&bytes),
             s.permute(a, i),
             s.permute(b, s.flip(i, 5)),
             s.load_bits(&self.0[1].map(f32::to_bits)),

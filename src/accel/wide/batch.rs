@@ -6,7 +6,8 @@
 //! rays, foresees every branch, and what a ray needs next, asked for when it joins its list, is there when
 //! its turn comes.
 
-use std::cell::RefCell;
+use std::cell::Cell;
+use std::thread::LocalKey;
 
 use super::beam::Beam;
 use super::child::Child;
@@ -46,43 +47,47 @@ pub struct UnderWay {
     beams: [Beam; BEAMS],
 }
 
+/// Kept by each thread from call to call.
+type Kept<V> = LocalKey<Cell<Option<Box<V>>>>;
+
 thread_local! {
-    /// Kept from batch to batch.
-    static UNDER_WAY: RefCell<Option<Box<UnderWay>>> = const { RefCell::new(None) };
+    static UNDER_WAY: Cell<Option<Box<UnderWay>>> = const { Cell::new(None) };
     /// What a ray alone has met and not visited yet.
-    static OPEN: RefCell<Option<Box<Open>>> = const { RefCell::new(None) };
+    static OPEN: Cell<Option<Box<Open>>> = const { Cell::new(None) };
 }
 
 /// Lends room for a batch.
 pub fn with_under_way<R>(work: impl FnOnce(&mut UnderWay) -> R) -> R {
-    // Taken while it is lent: a query may trace rays of its own.
-    let mut under_way = UNDER_WAY.take().unwrap_or_else(nobody);
-    let result = work(&mut under_way);
-    UNDER_WAY.set(Some(under_way));
+    lend(&UNDER_WAY, UnderWay::new, work)
+}
+
+/// Lends room for one ray.
+#[inline(always)]
+pub fn with_open<R>(work: impl FnOnce(&mut Open) -> R) -> R {
+    lend(&OPEN, Open::new, work)
+}
+
+/// Taken while it is lent: a query may trace rays of its own.
+#[inline(always)]
+fn lend<V, R>(kept: &'static Kept<V>, new: fn() -> V, work: impl FnOnce(&mut V) -> R) -> R {
+    let mut lent = kept.take().unwrap_or_else(|| boxed(new));
+    let result = work(&mut lent);
+    kept.set(Some(lent));
     result
 }
 
 /// Too large for the frame of whoever asks for it.
 #[cold]
 #[inline(never)]
-fn nobody() -> Box<UnderWay> {
-    Box::new(UnderWay { ways: [const { Way::idle() }; RAYS], beams: [const { Beam::idle() }; BEAMS] })
+fn boxed<V>(new: fn() -> V) -> Box<V> {
+    Box::new(new())
 }
 
-/// Lends room for one ray.
-#[inline(always)]
-pub fn with_open<R>(work: impl FnOnce(&mut Open) -> R) -> R {
-    let mut open = OPEN.take().unwrap_or_else(nothing_open);
-    let result = work(&mut open);
-    OPEN.set(Some(open));
-    result
-}
-
-/// As [`nobody`].
-#[cold]
-#[inline(never)]
-fn nothing_open() -> Box<Open> {
-    Box::new(Open::new())
+impl UnderWay {
+    /// Nobody.
+    const fn new() -> Self {
+        Self { ways: [const { Way::idle() }; RAYS], beams: [const { Beam::idle() }; BEAMS] }
+    }
 }
 
 /// Rays, or beams, by what they do next, each with what it visits: the kinds of [`Child`], and [`SETTLE`].
@@ -148,7 +153,7 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
     #[inline(always)]
     fn run<S: Simd>(self, s: S) -> Self::Out {
         let Self { tree, rays, query, hits, cancel, under_way: UnderWay { ways, beams } } = self;
-        let (units, whose) = (&tree.units[..], tree.geometry.whose());
+        let whose = tree.geometry.whose();
         let (mut lists, mut beam_lists) = (Lists::<RAYS>::new(), Lists::<BEAMS>::new());
         let mut rest = Rest::new(&tree.geometry, rays);
         let mut rounds = 0usize;
@@ -179,79 +184,112 @@ impl<T: TriTest, B: Pack, Q: Query> Kernel for Batch<'_, T, B, Q> {
             if idle == RAYS && idle_beams == BEAMS && rest.is_done() {
                 return Ok(rest.traced);
             }
-            // What comes next is looked up in a loop of its own: by then it is known for all of them.
-            let nodes = lists.take(Child::NODE);
-            for i in 0..nodes {
-                let (child, ray) = lists.get(Child::NODE, i);
-                let (way, node) = (&mut ways[ray], Node::at(units, child.place()));
-                let met = node.meet(s, &way.slabs(), way.best.tmin(), way.best.t());
-                way.last = way.open.replace(s, way.last, node, &met, way.order());
-            }
-            for i in 0..nodes {
-                let (_, ray) = lists.get(Child::NODE, i);
-                let way = &ways[ray];
-                let next = way.open.next(way.last);
-                tree.prefetch(s, next);
-                lists.add(next.kind(), next, ray);
-            }
-            for i in 0..lists.take(Child::BLOCKS) {
-                let (child, ray) = lists.get(Child::BLOCKS, i);
-                let way = &mut ways[ray];
-                let block = B::at(units, child.place());
-                let axes = way.test::<T>().axes();
-                let slabs = EightSlabs::splat(s, &way.slabs_in_order(axes));
-                let interval = [s.splat(way.best.tmin()), s.splat(way.best.t())];
-                let hits = T::hit_eight(s, &splat_own(s, &way.own()), &slabs, interval, &corners(s, block, axes));
-                way.found.keep(s, &hits, block.lanes());
-                way.block = child.place();
-                way.last = way.open.shorten(way.last, child, B::UNITS);
-                let next = way.open.next(way.last);
-                tree.prefetch(s, next);
-                let list = if way.found.any() { SETTLE } else { next.kind() };
-                lists.add(list, next, ray);
-            }
-            for i in 0..lists.take(SETTLE) {
-                let (_, ray) = lists.get(SETTLE, i);
-                let way = &mut ways[ray];
-                let block = B::at(units, way.block);
-                let before = way.best.t();
-                let test = way.test::<T>();
-                if way.found.settle(&test, block, query, &mut way.best, &mut Off) {
-                    lists.add(Child::NOTHING, Child::NONE, ray);
-                    continue;
-                }
-                if way.best.t() < before {
-                    way.last = way.open.forget_behind(s, way.last, way.best.t(), &mut Off);
-                }
-                let next = way.open.next(way.last);
-                tree.prefetch(s, next);
-                lists.add(next.kind(), next, ray);
-            }
+            enter_nodes(s, tree, ways, &mut lists);
+            look_at_blocks(s, tree, ways, &mut lists);
+            settle(s, tree, query, ways, &mut lists);
             for i in idle..lists.lens[Child::NOTHING] {
                 let (_, ray) = lists.get(Child::NOTHING, i);
                 ways[ray].end(&whose, hits);
             }
-            for i in 0..beam_lists.take(Child::NODE) {
-                let (child, who) = beam_lists.get(Child::NODE, i);
-                let beam = &mut beams[who];
-                beam.enter(s, Node::at(units, child.place()));
-                let next = beam.open.next(beam.last);
-                tree.prefetch(s, next);
-                beam_lists.add(next.kind(), next, who);
-            }
-            for i in 0..beam_lists.take(Child::BLOCKS) {
-                let (child, who) = beam_lists.get(Child::BLOCKS, i);
-                let beam = &mut beams[who];
-                beam.last = beam.open.shorten(beam.last, child, B::UNITS);
-                let more = beam.test::<S, T, B, Q>(s, B::at(units, child.place()), query);
-                let next = if more { beam.open.next(beam.last) } else { Child::NONE };
-                tree.prefetch(s, next);
-                beam_lists.add(next.kind(), next, who);
-            }
+            step_beams(s, tree, query, beams, &mut beam_lists);
             for i in idle_beams..beam_lists.lens[Child::NOTHING] {
                 let (_, who) = beam_lists.get(Child::NOTHING, i);
                 beams[who].end(s, &whose, hits);
             }
         }
+    }
+}
+
+/// Rays that enter a node.
+#[inline(always)]
+fn enter_nodes<S: Simd, T: TriTest, B: Pack>(s: S, tree: &Tree<T, B>, ways: &mut [Way; RAYS], lists: &mut Lists<RAYS>) {
+    let nodes = lists.take(Child::NODE);
+    for i in 0..nodes {
+        let (child, ray) = lists.get(Child::NODE, i);
+        let (way, node) = (&mut ways[ray], Node::at(&tree.units, child.place()));
+        let met = node.meet(s, &way.slabs(), way.best.tmin(), way.best.t());
+        way.last = way.open.replace(s, way.last, node, &met, way.order());
+    }
+    // What comes next is looked up in a loop of its own: by then it is known for all of them.
+    for i in 0..nodes {
+        let (_, ray) = lists.get(Child::NODE, i);
+        let next = ways[ray].open.next(ways[ray].last);
+        tree.prefetch(s, next);
+        lists.add(next.kind(), next, ray);
+    }
+}
+
+/// Rays that look at a block of triangles.
+#[inline(always)]
+fn look_at_blocks<S: Simd, T: TriTest, B: Pack>(s: S, tree: &Tree<T, B>, ways: &mut [Way; RAYS], lists: &mut Lists<RAYS>) {
+    for i in 0..lists.take(Child::BLOCKS) {
+        let (child, ray) = lists.get(Child::BLOCKS, i);
+        let way = &mut ways[ray];
+        let block = B::at(&tree.units, child.place());
+        let axes = way.test::<T>().axes();
+        let slabs = EightSlabs::splat(s, &way.slabs_in_order(axes));
+        let interval = [s.splat(way.best.tmin()), s.splat(way.best.t())];
+        let hits = T::hit_eight(s, &splat_own(s, &way.own()), &slabs, interval, &corners(s, block, axes));
+        way.found.keep(s, &hits, block.lanes());
+        way.block = child.place();
+        way.last = way.open.shorten(way.last, child, B::UNITS);
+        let next = way.open.next(way.last);
+        tree.prefetch(s, next);
+        let list = if way.found.any() { SETTLE } else { next.kind() };
+        lists.add(list, next, ray);
+    }
+}
+
+/// Rays that have found something.
+#[inline(always)]
+fn settle<S: Simd, T: TriTest, B: Pack, Q: Query>(
+    s: S,
+    tree: &Tree<T, B>,
+    query: &Q,
+    ways: &mut [Way; RAYS],
+    lists: &mut Lists<RAYS>,
+) {
+    for i in 0..lists.take(SETTLE) {
+        let (_, ray) = lists.get(SETTLE, i);
+        let way = &mut ways[ray];
+        let (test, before) = (way.test::<T>(), way.best.t());
+        if way.found.settle(&test, B::at(&tree.units, way.block), query, &mut way.best, &mut Off) {
+            lists.add(Child::NOTHING, Child::NONE, ray);
+            continue;
+        }
+        if way.best.t() < before {
+            way.last = way.open.forget_behind(s, way.last, way.best.t(), &mut Off);
+        }
+        let next = way.open.next(way.last);
+        tree.prefetch(s, next);
+        lists.add(next.kind(), next, ray);
+    }
+}
+
+/// All beams: first those that enter a node, then those that test a block.
+#[inline(always)]
+fn step_beams<S: Simd, T: TriTest, B: Pack, Q: Query>(
+    s: S,
+    tree: &Tree<T, B>,
+    query: &Q,
+    beams: &mut [Beam; BEAMS],
+    lists: &mut Lists<BEAMS>,
+) {
+    for i in 0..lists.take(Child::NODE) {
+        let (child, who) = lists.get(Child::NODE, i);
+        let beam = &mut beams[who];
+        beam.enter(s, Node::at(&tree.units, child.place()));
+        let next = beam.open.next(beam.last);
+        tree.prefetch(s, next);
+        lists.add(next.kind(), next, who);
+    }
+    for i in 0..lists.take(Child::BLOCKS) {
+        let (child, who) = lists.get(Child::BLOCKS, i);
+        let beam = &mut beams[who];
+        beam.last = beam.open.shorten(beam.last, child, B::UNITS);
+        let more = beam.test::<S, T, B, Q>(s, B::at(&tree.units, child.place()), query);
+        let next = if more { beam.open.next(beam.last) } else { Child::NONE };
+        tree.prefetch(s, next);
+        lists.add(next.kind(), next, who);
     }
 }

@@ -65,7 +65,7 @@ impl TriTest for Fast {
         let v = s.mul(d.dot(s, q), inv);
         let t = s.mul(e2.dot(s, q), inv);
         let inside = s.and(s.and(s.le(zero, u), s.le(u, one)), s.and(s.le(zero, v), s.le(s.add(u, v), one)));
-        Meets { met: s.and(inside, s.le(s.abs(t), s.splat(f32::MAX))), doubt: None, t, u, v }
+        Meets { met: inside, doubt: None, t, u, v }
     }
 
     #[inline(always)]

@@ -118,6 +118,7 @@ pub trait TriTest: Copy + Send + Sync + 'static {
 /// Which of eight triangles are met, and where.
 #[derive(Clone, Copy)]
 pub struct Meets<S: Simd> {
+    /// Those that are, if t is finite.
     met: S::M,
     /// Those that only the test of one triangle can tell about, if there may be any.
     doubt: Option<S::M>,
@@ -141,6 +142,8 @@ impl<S: Simd> Meets<S> {
         let t = s.min(exit, s.max(entry, self.t));
         let [tmin, tmax] = interval;
         let inside = s.and(s.le(entry, exit), s.and(s.le(tmin, t), s.le(t, tmax)));
+        // As [`TriTest::meet`], which accepts no t that is infinite or none; only here is t asked for.
+        let inside = s.and(inside, s.le(s.abs(self.t), s.splat(f32::MAX)));
         Hits { hit: s.and(self.met, inside), doubt: self.doubt(s), t, u: self.u, v: self.v }
     }
 

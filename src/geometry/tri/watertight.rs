@@ -88,7 +88,6 @@ impl TriTest for Watertight {
         let inv = s.div(s.splat(1.0), s.add(s.add(u, v), w));
         let t = s.add(s.add(s.mul(u, a.z), s.mul(v, b.z)), s.mul(w, c.z));
         let t = s.mul(t, s.mul(own[5], inv));
-        let met = s.and(met, s.le(s.abs(t), s.splat(f32::MAX)));
         Meets { met, doubt: Some(doubt), t, u: s.mul(v, inv), v: s.mul(w, inv) }
     }
 
