@@ -37,6 +37,12 @@ impl<F: Copy> Points<F> {
         s.store(self.z, &mut to[2]);
     }
 
+    /// Point `i[k]` in lane `k`.
+    #[inline(always)]
+    pub fn permute<S: Simd<F = F>>(self, s: S, i: S::I) -> Self {
+        Self { x: s.permute(self.x, i), y: s.permute(self.y, i), z: s.permute(self.z, i) }
+    }
+
     /// The sums.
     #[inline(always)]
     pub fn plus<S: Simd<F = F>>(self, s: S, other: Self) -> Self {

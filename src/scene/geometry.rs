@@ -5,6 +5,7 @@ use glam::Vec3;
 
 use super::{LoadCx, Reason, Scene};
 use crate::geometry::{Aabb, Space, has_zero_area, num};
+use crate::sys::list_in_large_pages;
 use crate::task::Charge;
 
 /// A triangle of the flattened scene: its index in file order, dropped ones counted.
@@ -54,7 +55,8 @@ impl Geometry {
         let mut flat = Self {
             space: Space::new(&Aabb::EMPTY),
             world_bounds: Aabb::EMPTY,
-            positions: Vec::with_capacity(num::floor_index(vertices as f64, num::MAX_INDEX)),
+            // Leaves may refer to them from anywhere.
+            positions: list_in_large_pages(num::floor_index(vertices as f64, num::MAX_INDEX)),
             triangles: Vec::with_capacity(num::floor_index(triangles as f64, num::MAX_INDEX)),
             live: Live::All,
             first_prim: vec![0],

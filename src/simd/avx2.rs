@@ -5,7 +5,8 @@
 
 use std::arch::x86_64::*;
 
-use super::{Kernel, LANES, Lanes, Simd};
+use super::{Kernel, LANES, Lanes, Portable, Simd};
+use glam::Vec3;
 
 /// AVX2, BMI and POPCNT are there.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +28,25 @@ impl Avx2 {
 #[target_feature(enable = "avx,avx2,bmi1,bmi2,popcnt,lzcnt")]
 fn enter<K: Kernel>(s: Avx2, kernel: K) -> K::Out {
     kernel.run(s)
+}
+
+/// A point, and the one four further on, each in half a vector with one number more.
+///
+/// # Safety
+/// AVX is there; all numbers in `which` are those of points that have another behind them.
+#[inline(always)]
+unsafe fn two(from: &[Vec3], which: &[u32; LANES], k: usize) -> __m256 {
+    // SAFETY: as above.
+    unsafe {
+        let (low, high) = (from.as_ptr().add(which[k] as usize), from.as_ptr().add(which[k + 4] as usize));
+        _mm256_insertf128_ps::<1>(_mm256_castps128_ps256(_mm_loadu_ps(low.cast())), _mm_loadu_ps(high.cast()))
+    }
+}
+
+/// Points of which one is the last of the list, or not in it.
+#[cold]
+fn last(from: &[Vec3], which: &[u32; LANES]) -> [Lanes; 3] {
+    Portable.gather(from, which)
 }
 
 impl Simd for Avx2 {
@@ -170,6 +190,33 @@ impl Simd for Avx2 {
     fn bits(self, m: __m256) -> u32 {
         // SAFETY: as in `run`.
         unsafe { _mm256_movemask_ps(m).cast_unsigned() }
+    }
+
+    #[inline(always)]
+    fn load_shorts(self, from: &[u16; LANES]) -> __m256 {
+        // SAFETY: the reference is to the 16 bytes that are loaded.
+        unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(from.as_ptr().cast()))) }
+    }
+
+    #[inline(always)]
+    fn gather(self, from: &[Vec3], which: &[u32; LANES]) -> [__m256; 3] {
+        // SAFETY: the reference is to 32 bytes. Four floats are loaded where a point has three, so every
+        // point must have another behind it: `others` is the greatest that does, and all were compared with it.
+        unsafe {
+            let i = _mm256_loadu_si256(which.as_ptr().cast());
+            let others = u32::try_from(from.len()).unwrap_or(u32::MAX).wrapping_sub(2);
+            let others = _mm256_set1_epi32(others.cast_signed());
+            let within = _mm256_cmpeq_epi32(_mm256_max_epu32(i, others), others);
+            if from.len() < 2 || _mm256_movemask_epi8(within) != -1 {
+                let [x, y, z] = last(from, which);
+                return [self.load(&x), self.load(&y), self.load(&z)];
+            }
+            let (a, b) = (two(from, which, 0), two(from, which, 1));
+            let (c, d) = (two(from, which, 2), two(from, which, 3));
+            let (ab, ab2) = (_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
+            let (cd, cd2) = (_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d));
+            [_mm256_shuffle_ps::<0x44>(ab, cd), _mm256_shuffle_ps::<0xEE>(ab, cd), _mm256_shuffle_ps::<0x44>(ab2, cd2)]
+        }
     }
 
     #[inline(always)]

@@ -17,6 +17,7 @@ mod tests;
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;
 pub use compress::{LEFT, UNDER_XOR};
+use glam::Vec3;
 pub use portable::Portable;
 
 /// Lanes of every vector.
@@ -95,6 +96,11 @@ pub trait Simd: Copy + Send + Sync + 'static {
     fn or(self, a: Self::M, b: Self::M) -> Self::M;
     /// One bit for each lane.
     fn bits(self, m: Self::M) -> u32;
+
+    /// Eight whole numbers from memory, as floats of the same value.
+    fn load_shorts(self, from: &[u16; LANES]) -> Self::F;
+    /// Eight points of a list, by axis. Panics if one of them is not there.
+    fn gather(self, from: &[Vec3], which: &[u32; LANES]) -> [Self::F; 3];
 
     /// Numbers of lanes from memory; only the three lowest bits count.
     fn indices(self, from: &[u8; LANES]) -> Self::I;

@@ -1,6 +1,7 @@
 //! The road that every processor has: arrays and loops, and the oracle for the others.
 
 use super::{Kernel, LANES, Lanes, Simd};
+use glam::Vec3;
 
 /// Plain code.
 #[derive(Clone, Copy, Debug)]
@@ -143,6 +144,21 @@ impl Simd for Portable {
     #[inline(always)]
     fn bits(self, m: u32) -> u32 {
         m
+    }
+
+    #[inline(always)]
+    fn load_shorts(self, from: &[u16; LANES]) -> Lanes {
+        each(|i| f32::from(from[i]))
+    }
+
+    #[inline(always)]
+    fn gather(self, from: &[Vec3], which: &[u32; LANES]) -> [Lanes; 3] {
+        let mut by_axis = [[0.0; LANES]; 3];
+        for (lane, i) in which.iter().enumerate() {
+            let p = from[*i as usize];
+            (by_axis[0][lane], by_axis[1][lane], by_axis[2][lane]) = (p.x, p.y, p.z);
+        }
+        by_axis
     }
 
     #[inline(always)]

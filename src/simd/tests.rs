@@ -32,8 +32,13 @@ impl Kernel for Everything {
             s.and_bits(a, b),
             s.abs(a),
             s.select(s.lt(a, b), a, b),
+            s.load_shorts(&self.0[0].map(|x| x.to_bits() as u16)),
         ];
-        for result in results.into_iter().chain(columns) {
+        // All but the last, and all: the last of a list may be fetched in another way.
+        let points: Vec<Vec3> = self.0[0].iter().zip(self.0[1]).map(|(a, b)| Vec3::new(*a, b, a + b)).collect();
+        let (first, all) = (bytes.map(|i| u32::from(i % 7)), bytes.map(|i| u32::from(i % 8)));
+        let gathered = [s.gather(&points, &first), s.gather(&points, &all), s.gather(&points[..1], &[0; LANES])];
+        for result in results.into_iter().chain(columns).chain(gathered.into_iter().flatten()) {
             let (mut floats, mut bits) = ([0.0; LANES], [0; LANES]);
             s.store(result, &mut floats);
             s.store_bits(result, &mut bits);

@@ -18,7 +18,7 @@ use super::tree::Tree;
 use super::way::{Rest, Way};
 use crate::accel::probe::Off;
 use crate::accel::{Hit, Query, Traced};
-use crate::geometry::tri::{TriTest, corners, splat_own};
+use crate::geometry::tri::{TriTest, splat_own};
 use crate::geometry::{EightSlabs, Ray};
 use crate::simd::{Kernel, Simd};
 use crate::task::{Cancel, Cancelled};
@@ -90,28 +90,33 @@ impl UnderWay {
     }
 }
 
-/// Rays, or beams, by what they do next, each with what it visits: the kinds of [`Child`], and [`SETTLE`].
+/// Rays, or beams, by what they do next, each with what it visits: the kinds of [`Child`], [`SETTLE`], and
+/// [`FETCHED`].
 struct Lists<const N: usize> {
-    entries: [[(Child, u32); N]; 4],
-    lens: [usize; 4],
+    entries: [[(Child, u32); N]; LISTS],
+    lens: [usize; LISTS],
 }
 
+/// A power of two, so that the number of a list is cut short by a mask.
+const LISTS: usize = 8;
 /// The list of rays that have found something.
 const SETTLE: usize = 1;
+/// The list of rays at a block whose points were asked for.
+const FETCHED: usize = 4;
 
 impl<const N: usize> Lists<N> {
     /// All are idle.
     fn new() -> Self {
         let idle = std::array::from_fn(|i| (Child::NONE, i as u32));
-        let mut entries = [[(Child::NONE, 0); N]; 4];
-        entries[Child::NOTHING] = idle;
-        Self { entries, lens: [0, 0, 0, N] }
+        let (mut entries, mut lens) = ([[(Child::NONE, 0); N]; LISTS], [0; LISTS]);
+        (entries[Child::NOTHING], lens[Child::NOTHING]) = (idle, N);
+        Self { entries, lens }
     }
 
     /// One joins a list. There are never more of them than there is room for.
     #[inline(always)]
     const fn add(&mut self, list: usize, next: Child, who: usize) {
-        let list = list % 4;
+        let list = list % LISTS;
         let len = self.lens[list];
         self.entries[list][len % N] = (next, who as u32);
         self.lens[list] = len + 1;
@@ -119,7 +124,7 @@ impl<const N: usize> Lists<N> {
 
     #[inline(always)]
     const fn get(&self, list: usize, i: usize) -> (Child, usize) {
-        let (child, who) = self.entries[list % 4][i % N];
+        let (child, who) = self.entries[list % LISTS][i % N];
         (child, who as usize % N)
     }
 
@@ -206,9 +211,9 @@ fn enter_nodes<S: Simd, T: TriTest, B: Pack>(s: S, tree: &Tree<T, B>, ways: &mut
     let nodes = lists.take(Child::NODE);
     for i in 0..nodes {
         let (child, ray) = lists.get(Child::NODE, i);
-        let (way, node) = (&mut ways[ray], Node::at(&tree.units, child.place()));
+        let (way, node) = (&mut ways[ray], B::Node::at(&tree.units, child.place()));
         let met = node.meet(s, &way.slabs(), way.best.tmin(), way.best.t());
-        way.last = way.open.replace(s, way.last, node, &met, way.order());
+        way.last = way.open.replace(s, way.last, node.children(), &met, way.order());
     }
     // What comes next is looked up in a loop of its own: by then it is known for all of them.
     for i in 0..nodes {
@@ -222,14 +227,15 @@ fn enter_nodes<S: Simd, T: TriTest, B: Pack>(s: S, tree: &Tree<T, B>, ways: &mut
 /// Rays that look at a block of triangles.
 #[inline(always)]
 fn look_at_blocks<S: Simd, T: TriTest, B: Pack>(s: S, tree: &Tree<T, B>, ways: &mut [Way; RAYS], lists: &mut Lists<RAYS>) {
-    for i in 0..lists.take(Child::BLOCKS) {
-        let (child, ray) = lists.get(Child::BLOCKS, i);
+    let looked_at = if B::REFERS { FETCHED } else { Child::BLOCKS };
+    for i in 0..lists.take(looked_at) {
+        let (child, ray) = lists.get(looked_at, i);
         let way = &mut ways[ray];
         let block = B::at(&tree.units, child.place());
         let axes = way.test::<T>().axes();
         let slabs = EightSlabs::splat(s, &way.slabs_in_order(axes));
         let interval = [s.splat(way.best.tmin()), s.splat(way.best.t())];
-        let hits = T::hit_eight(s, &splat_own(s, &way.own()), &slabs, interval, &corners(s, block, axes));
+        let hits = T::hit_eight(s, &splat_own(s, &way.own()), &slabs, interval, &block.corners(s, tree.points(), axes));
         way.found.keep(s, &hits, block.lanes());
         way.block = child.place();
         way.last = way.open.shorten(way.last, child, B::UNITS);
@@ -237,6 +243,14 @@ fn look_at_blocks<S: Simd, T: TriTest, B: Pack>(s: S, tree: &Tree<T, B>, ways: &
         tree.prefetch(s, next);
         let list = if way.found.any() { SETTLE } else { next.kind() };
         lists.add(list, next, ray);
+    }
+    if B::REFERS {
+        // Their points are there when their turn comes.
+        for i in 0..lists.take(Child::BLOCKS) {
+            let (child, ray) = lists.get(Child::BLOCKS, i);
+            B::at(&tree.units, child.place()).prefetch(s, tree.points());
+            lists.add(FETCHED, child, ray);
+        }
     }
 }
 
@@ -253,7 +267,7 @@ fn settle<S: Simd, T: TriTest, B: Pack, Q: Query>(
         let (_, ray) = lists.get(SETTLE, i);
         let way = &mut ways[ray];
         let (test, before) = (way.test::<T>(), way.best.t());
-        if way.found.settle(&test, B::at(&tree.units, way.block), query, &mut way.best, &mut Off) {
+        if way.found.settle(&test, (B::at(&tree.units, way.block), tree.points()), query, &mut way.best, &mut Off) {
             lists.add(Child::NOTHING, Child::NONE, ray);
             continue;
         }
@@ -278,7 +292,7 @@ fn step_beams<S: Simd, T: TriTest, B: Pack, Q: Query>(
     for i in 0..lists.take(Child::NODE) {
         let (child, who) = lists.get(Child::NODE, i);
         let beam = &mut beams[who];
-        beam.enter(s, Node::at(&tree.units, child.place()));
+        beam.enter(s, B::Node::at(&tree.units, child.place()));
         let next = beam.open.next(beam.last);
         tree.prefetch(s, next);
         lists.add(next.kind(), next, who);
@@ -287,7 +301,7 @@ fn step_beams<S: Simd, T: TriTest, B: Pack, Q: Query>(
         let (child, who) = lists.get(Child::BLOCKS, i);
         let beam = &mut beams[who];
         beam.last = beam.open.shorten(beam.last, child, B::UNITS);
-        let more = beam.test::<S, T, B, Q>(s, B::at(&tree.units, child.place()), query);
+        let more = beam.test::<S, T, B, Q>(s, (B::at(&tree.units, child.place()), tree.points()), query);
         let next = if more { beam.open.next(beam.last) } else { Child::NONE };
         tree.prefetch(s, next);
         lists.add(next.kind(), next, who);

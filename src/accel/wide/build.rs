@@ -77,12 +77,12 @@ pub fn build<T, B: Pack>(
     drop((draft, peak));
     let (whole, root) = match parts {
         Some(parts) => parts.together(cx)?,
-        None => (Packed::default(), Child::NONE),
+        None => (Packed::new(Vec::new()), Child::NONE),
     };
     let bytes = whole.units.capacity() * unit::BYTES;
     let charge = cx.budget.charge(bytes as u64).map_err(too_large)?;
     let geometry = Arc::clone(geometry);
-    let Packed { units, nodes } = whole;
+    let Packed { units, nodes, .. } = whole;
     Ok(Tree { geometry, units, nodes, root, splits, remarks, road: Road::best(), _charge: charge, test: PhantomData })
 }
 
@@ -91,24 +91,29 @@ fn too_large(over: OverBudget) -> BuildError {
 }
 
 /// Nodes and blocks that several threads make: each its own, put together at the end.
-#[derive(Debug, Default)]
-struct Packed {
+#[derive(Debug)]
+struct Packed<N> {
     units: Vec<Unit>,
     /// How many nodes are among them.
     nodes: usize,
+    of: PhantomData<N>,
 }
 
-impl Packed {
+impl<N: Node> Packed<N> {
+    const fn new(units: Vec<Unit>) -> Self {
+        Self { units, nodes: 0, of: PhantomData }
+    }
+
     /// Appends a node; where it lies.
     fn push_node(&mut self, slots: &[(Child, Aabb); LANES]) -> u32 {
         self.nodes += 1;
-        num::index(unit::push(&mut self.units, &Node::new(slots)))
+        num::index(unit::push(&mut self.units, &N::new(slots)))
     }
 
     /// Writes what a slot of a node refers to.
     fn refer(&mut self, slot: Option<(u32, usize)>, child: Child) {
         if let Some((node, slot)) = slot {
-            Node::at_mut(&mut self.units, node).refer(slot, child);
+            N::at_mut(&mut self.units, node).refer(slot, child);
         }
     }
 
@@ -116,7 +121,7 @@ impl Packed {
     fn moved(&mut self, root: Child, by: u32) -> Child {
         let mut open = vec![root];
         while let Some(child) = open.pop().filter(|child| child.is_node()) {
-            let node = Node::at_mut(&mut self.units, child.place());
+            let node = N::at_mut(&mut self.units, child.place());
             open.extend(node.children().iter().filter(|child| child.is_node()));
             for slot in 0..LANES {
                 node.refer(slot, node.children()[slot].moved(by));
@@ -133,21 +138,21 @@ struct Part {
 }
 
 /// All parts, packed, and the nodes above them.
-struct Parts {
-    upper: Packed,
-    below: Vec<Below>,
+struct Parts<N> {
+    upper: Packed<N>,
+    below: Vec<Below<N>>,
 }
 
 /// A part, whose slot it is, and what refers to it.
-struct Below {
+struct Below<N> {
     slot: Option<(u32, usize)>,
-    list: Packed,
+    list: Packed<N>,
     root: Child,
 }
 
-impl Parts {
+impl<N: Node> Parts<N> {
     /// One list of all, and its root.
-    fn together(self, cx: &BuildCx) -> Result<(Packed, Child), BuildError> {
+    fn together(self, cx: &BuildCx) -> Result<(Packed<N>, Child), BuildError> {
         let Self { mut upper, below } = self;
         let units = upper.units.len() + below.iter().map(|part| part.list.units.len()).sum::<usize>();
         if units > MAX_UNITS {
@@ -159,7 +164,7 @@ impl Parts {
             });
         }
         let _twice = cx.budget.charge((2 * units * unit::BYTES) as u64).map_err(too_large)?;
-        let mut whole = Packed { units: list_in_large_pages(units), nodes: upper.nodes };
+        let mut whole = Packed { nodes: upper.nodes, ..Packed::new(list_in_large_pages(units)) };
         whole.units.append(&mut upper.units);
         let mut root = Child::node(0);
         for Below { slot, mut list, root: child } in below {
@@ -185,8 +190,8 @@ struct Packer<'a> {
 impl Packer<'_> {
     /// The upper nodes first, until there are parts enough for all threads; then the parts, side by
     /// side.
-    fn pack<B: Pack>(&self) -> Result<Parts, BuildError> {
-        let mut upper = Packed::default();
+    fn pack<B: Pack>(&self) -> Result<Parts<B::Node>, BuildError> {
+        let mut upper = Packed::new(Vec::new());
         let mut open = std::collections::VecDeque::from([Part { from: 0, slot: None }]);
         let mut parts = Vec::new();
         while let Some(part) = open.pop_front() {
@@ -201,7 +206,7 @@ impl Packer<'_> {
             open.extend(used.map(|(slot, (child, _))| Part { from: child.place(), slot: Some((place, slot)) }));
         }
         let pack = |part: &Part| {
-            let mut list = Packed::default();
+            let mut list = Packed::new(Vec::new());
             let root = self.child::<B>(part.from, &mut list, &mut Vec::new())?;
             list.units.shrink_to_fit();
             Ok(Below { slot: part.slot, list, root })
@@ -220,7 +225,7 @@ impl Packer<'_> {
     }
 
     /// Writes all below a node of the binary tree, depth first, and returns what refers to it.
-    fn child<B: Pack>(&self, at: u32, list: &mut Packed, prims: &mut Vec<PrimRef>) -> Result<Child, BuildError> {
+    fn child<B: Pack>(&self, at: u32, list: &mut Packed<B::Node>, prims: &mut Vec<PrimRef>) -> Result<Child, BuildError> {
         if self.collapse.is_leaf(at) {
             prims.clear();
             self.gather(at, prims);
@@ -239,7 +244,7 @@ impl Packer<'_> {
 
     /// The blocks of one leaf. One that does not fit into the most there can be becomes several
     /// below a node of its own.
-    fn leaf<B: Pack>(&self, prims: &mut [PrimRef], list: &mut Packed) -> Child {
+    fn leaf<B: Pack>(&self, prims: &mut [PrimRef], list: &mut Packed<B::Node>) -> Child {
         let first = list.units.len();
         let (mut done, mut blocks) = (0, 0);
         while done < prims.len() && blocks < MAX_BLOCKS {
@@ -259,7 +264,7 @@ impl Packer<'_> {
             let bounds = part.iter().fold(Aabb::EMPTY, |b, prim| b.union(Aabb::of_triangle(&self.geometry.corners(*prim))));
             *slot = (self.leaf::<B>(part, list), bounds);
         }
-        *Node::at_mut(&mut list.units, place) = Node::new(&slots);
+        *B::Node::at_mut(&mut list.units, place) = B::Node::new(&slots);
         Child::node(place)
     }
 

@@ -1,7 +1,10 @@
 //! Triangles of a leaf, eight at a time.
 
+use super::compressed::Compressed;
+use super::node::{Full, Node};
 use super::unit::{self, Unit};
-use crate::geometry::tri::{Block, Eight};
+use crate::geometry::eight::Points;
+use crate::geometry::tri::{self, Block, Eight};
 use crate::scene::{Geometry, PrimRef};
 use crate::simd::{LANES, Lanes, Simd};
 use bytemuck::Pod;
@@ -10,22 +13,38 @@ use glam::Vec3;
 /// Stands in lanes without a triangle.
 const NONE: PrimRef = PrimRef::MAX;
 
-/// How triangles of a leaf are packed, up to eight together.
-pub trait Pack: Eight + Pod + Send + Sync + std::fmt::Debug {
+/// How triangles of a leaf are packed, up to eight together. `points` are the geometry's.
+pub trait Pack: Pod + Send + Sync + std::fmt::Debug {
+    /// The nodes that go with it.
+    type Node: Node;
+
     /// Units that one takes.
     const UNITS: u32 = (size_of::<Self>() / unit::BYTES) as u32;
 
-    /// The one at a place.
-    fn at(units: &[Unit], place: u32) -> &Self;
-
     /// The triangles that one usually holds of a leaf that is large enough.
     const USUAL: u8;
+
+    /// Whether it refers to points that lie elsewhere.
+    const REFERS: bool = false;
+
+    /// Asks for the points that it refers to.
+    #[inline(always)]
+    fn prefetch<S: Simd>(&self, _: S, _: &[Vec3]) {}
+
+    /// The one at a place.
+    fn at(units: &[Unit], place: u32) -> &Self;
 
     /// Packs as many triangles from the front of the list as fit, at least one, reordering it if that
     /// helps; how many.
     fn pack(geometry: &Geometry, prims: &mut [PrimRef]) -> (Self, usize);
 
-    /// The triangle of a lane that holds one.
+    /// Their corners, the axes in some order; lanes without a triangle hold anything.
+    fn corners<S: Simd>(&self, s: S, points: &[Vec3], axes: [usize; 3]) -> [Points<S::F>; 3];
+
+    /// The triangle in a lane.
+    fn triangle(&self, points: &[Vec3], lane: usize) -> [Vec3; 3];
+
+    /// The number of the triangle in a lane that holds one.
     fn prim(&self, lane: usize) -> PrimRef;
 
     /// One bit for each lane that holds a triangle.
@@ -40,19 +59,9 @@ pub struct Plain {
     prims: [PrimRef; LANES],
 }
 
-impl Eight for Plain {
-    #[inline(always)]
-    fn corner<S: Simd>(&self, s: S, corner: usize, axis: usize) -> S::F {
-        self.block.corner(s, corner, axis)
-    }
-
-    #[inline(always)]
-    fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.block.triangle(lane)
-    }
-}
-
 impl Pack for Plain {
+    type Node = Full;
+
     #[inline(always)]
     fn at(units: &[Unit], place: u32) -> &Self {
         unit::at::<Self, { Self::UNITS as usize }>(units, place as usize)
@@ -69,6 +78,16 @@ impl Pack for Plain {
     }
 
     #[inline(always)]
+    fn corners<S: Simd>(&self, s: S, _: &[Vec3], axes: [usize; 3]) -> [Points<S::F>; 3] {
+        tri::corners(s, &self.block, axes)
+    }
+
+    #[inline(always)]
+    fn triangle(&self, _: &[Vec3], lane: usize) -> [Vec3; 3] {
+        self.block.triangle(lane)
+    }
+
+    #[inline(always)]
     fn prim(&self, lane: usize) -> PrimRef {
         self.prims[lane]
     }
@@ -78,36 +97,74 @@ impl Pack for Plain {
     }
 }
 
-/// Neighbours share corners: eight corners at most, and the numbers of those of each triangle. 160
-/// bytes, less than half as much a triangle on a mesh; a permutation brings a corner of eight triangles
-/// into the lanes.
+/// Which of eight points are the corners of which of eight triangles.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C, align(32))]
-pub struct Patch {
-    /// By axis.
-    vertices: [Lanes; 3],
+#[repr(C)]
+struct Corners {
     /// By corner.
-    corners: [[u8; LANES]; 3],
+    of: [[u8; LANES]; 3],
+    /// A bit for each lane that holds a triangle, and nothing.
     lanes: [u8; 8],
     prims: [PrimRef; LANES],
 }
 
-impl Eight for Patch {
-    #[inline(always)]
-    fn corner<S: Simd>(&self, s: S, corner: usize, axis: usize) -> S::F {
-        s.permute(s.load(&self.vertices[axis]), s.indices(&self.corners[corner]))
+impl Corners {
+    /// As many triangles from the front of the list as share eight points, and the numbers of these: at each step
+    /// the triangle that brings the fewest new ones.
+    fn pack(geometry: &Geometry, prims: &mut [PrimRef]) -> (Self, [u32; LANES], usize) {
+        let mut packed = Self { of: [[0; LANES]; 3], lanes: [0; 8], prims: [NONE; LANES] };
+        let (mut points, mut known, mut used, mut count) = ([0; LANES], [Vec3::NAN; LANES], 0, 0);
+        while count < prims.len().min(LANES) {
+            let new = |prim: PrimRef| geometry.corners(prim).iter().filter(|p| !known[..used].contains(p)).count();
+            let best = (count..prims.len()).map(|i| (new(prims[i]), i)).min();
+            let Some((_, i)) = best.filter(|(new, _)| used + new <= LANES) else { break };
+            prims.swap(count, i);
+            let numbers = geometry.indexed().1[prims[count] as usize];
+            for (corner, (number, p)) in numbers.into_iter().zip(geometry.corners(prims[count])).enumerate() {
+                // Points at one place are one, whatever their numbers are.
+                let at = known[..used].iter().position(|v| *v == p).unwrap_or(used);
+                if at == used {
+                    (points[used], known[used]) = (number, p);
+                    used += 1;
+                }
+                packed.of[corner][count] = at as u8;
+            }
+            packed.prims[count] = prims[count];
+            count += 1;
+        }
+        let last = points[used.saturating_sub(1)];
+        points[used..].fill(last);
+        packed.lanes[0] = ((1u32 << count) - 1) as u8;
+        (packed, points, count)
     }
 
+    /// The corners of all, of the points by axis.
     #[inline(always)]
-    fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.corners.each_ref().map(|corner| {
-            let i = usize::from(corner[lane]) % LANES;
-            Vec3::new(self.vertices[0][i], self.vertices[1][i], self.vertices[2][i])
-        })
+    fn all<S: Simd>(&self, s: S, points: Points<S::F>) -> [Points<S::F>; 3] {
+        let [a, b, c] = &self.of;
+        [points.permute(s, s.indices(a)), points.permute(s, s.indices(b)), points.permute(s, s.indices(c))]
+    }
+
+    /// The points that are the corners of one.
+    #[inline(always)]
+    fn of_lane(&self, lane: usize) -> [usize; 3] {
+        self.of.each_ref().map(|corner| usize::from(corner[lane]) % LANES)
     }
 }
 
+/// Neighbours share corners: eight points at most, and which of them each triangle has. 160 bytes, less than half
+/// as much a triangle on a mesh; a permutation brings a corner of eight triangles into the lanes.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(32))]
+pub struct Patch {
+    /// By axis.
+    points: [Lanes; 3],
+    corners: Corners,
+}
+
 impl Pack for Patch {
+    type Node = Full;
+
     #[inline(always)]
     fn at(units: &[Unit], place: u32) -> &Self {
         unit::at::<Self, { Self::UNITS as usize }>(units, place as usize)
@@ -116,42 +173,92 @@ impl Pack for Patch {
     /// As on a mesh of about half as many vertices as triangles.
     const USUAL: u8 = 6;
 
-    /// The next triangle is the one that brings the fewest new corners.
     fn pack(geometry: &Geometry, prims: &mut [PrimRef]) -> (Self, usize) {
-        let mut patch = Self { vertices: [[f32::NAN; LANES]; 3], corners: [[0; LANES]; 3], lanes: [0; 8], prims: [NONE; LANES] };
-        let (mut vertices, mut used, mut count) = ([Vec3::NAN; LANES], 0, 0);
-        while count < prims.len().min(LANES) {
-            let new = |prim: PrimRef| geometry.corners(prim).iter().filter(|p| !vertices[..used].contains(p)).count();
-            let best = (count..prims.len()).map(|i| (new(prims[i]), i)).min();
-            let Some((_, i)) = best.filter(|(new, _)| used + new <= LANES) else { break };
-            prims.swap(count, i);
-            for (corner, p) in geometry.corners(prims[count]).into_iter().enumerate() {
-                let at = vertices[..used].iter().position(|v| *v == p).unwrap_or(used);
-                if at == used {
-                    vertices[used] = p;
-                    used += 1;
-                }
-                patch.corners[corner][count] = at as u8;
-            }
-            patch.prims[count] = prims[count];
-            count += 1;
-        }
-        for (i, v) in vertices.iter().enumerate() {
-            (0..3).for_each(|axis| patch.vertices[axis][i] = v[axis]);
-        }
-        patch.lanes[0] = ((1u32 << count) - 1) as u8;
-        (patch, count)
+        let (corners, points, count) = Corners::pack(geometry, prims);
+        let points = points.map(|number| geometry.indexed().0[number as usize]);
+        (Self { points: [0, 1, 2].map(|axis| points.map(|p| p[axis])), corners }, count)
+    }
+
+    #[inline(always)]
+    fn corners<S: Simd>(&self, s: S, _: &[Vec3], [x, y, z]: [usize; 3]) -> [Points<S::F>; 3] {
+        let Self { points, corners } = self;
+        corners.all(s, Points { x: s.load(&points[x]), y: s.load(&points[y]), z: s.load(&points[z]) })
+    }
+
+    #[inline(always)]
+    fn triangle(&self, _: &[Vec3], lane: usize) -> [Vec3; 3] {
+        let [x, y, z] = &self.points;
+        self.corners.of_lane(lane).map(|i| Vec3::new(x[i], y[i], z[i]))
     }
 
     #[inline(always)]
     fn prim(&self, lane: usize) -> PrimRef {
-        self.prims[lane]
+        self.corners.prims[lane]
     }
 
     #[inline(always)]
     fn lanes(&self) -> u32 {
-        u32::from(self.lanes[0])
+        u32::from(self.corners.lanes[0])
     }
 }
 
-const _: () = assert!(size_of::<Plain>() == 320 && size_of::<Patch>() == 160);
+/// The same with the numbers of the geometry's points in place of the points. 96 bytes.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(32))]
+pub struct Indexed {
+    points: [u32; LANES],
+    corners: Corners,
+}
+
+impl Pack for Indexed {
+    type Node = Compressed;
+
+    #[inline(always)]
+    fn at(units: &[Unit], place: u32) -> &Self {
+        unit::at::<Self, { Self::UNITS as usize }>(units, place as usize)
+    }
+
+    const USUAL: u8 = Patch::USUAL;
+
+    const REFERS: bool = true;
+
+    #[inline(always)]
+    fn prefetch<S: Simd>(&self, s: S, points: &[Vec3]) {
+        let first = points.as_ptr().addr();
+        for i in self.points {
+            s.prefetch(first + i as usize * size_of::<Vec3>());
+        }
+    }
+
+    fn pack(geometry: &Geometry, prims: &mut [PrimRef]) -> (Self, usize) {
+        let (corners, points, count) = Corners::pack(geometry, prims);
+        (Self { points, corners }, count)
+    }
+
+    #[inline(always)]
+    fn corners<S: Simd>(&self, s: S, points: &[Vec3], [x, y, z]: [usize; 3]) -> [Points<S::F>; 3] {
+        let all = s.gather(points, &self.points);
+        let mut by_axis = [[0.0; LANES]; 3];
+        s.store(all[0], &mut by_axis[0]);
+        s.store(all[1], &mut by_axis[1]);
+        s.store(all[2], &mut by_axis[2]);
+        self.corners.all(s, Points { x: s.load(&by_axis[x]), y: s.load(&by_axis[y]), z: s.load(&by_axis[z]) })
+    }
+
+    #[inline(always)]
+    fn triangle(&self, points: &[Vec3], lane: usize) -> [Vec3; 3] {
+        self.corners.of_lane(lane).map(|i| points[self.points[i] as usize])
+    }
+
+    #[inline(always)]
+    fn prim(&self, lane: usize) -> PrimRef {
+        self.corners.prims[lane]
+    }
+
+    #[inline(always)]
+    fn lanes(&self) -> u32 {
+        u32::from(self.corners.lanes[0])
+    }
+}
+
+const _: () = assert!(size_of::<Plain>() == 320 && size_of::<Patch>() == 160 && size_of::<Indexed>() == 96);

@@ -2,7 +2,7 @@
 //! together, and many rays on their way at a time.
 //!
 //! [`collapse`] makes nodes of eight of the tree of any builder of [`super::bvh`], [`slots`] orders
-//! their children so that rays need not sort them; [`node`] and [`leaf`] are what is met and tested,
+//! their children so that rays need not sort them; [`node`], [`compressed`] and [`leaf`] are what is met and tested,
 //! [`ray`] is one ray's way through the tree and [`batch`] that of many, taking turns.
 
 mod batch;
@@ -10,6 +10,7 @@ mod beam;
 mod build;
 mod child;
 mod collapse;
+mod compressed;
 mod leaf;
 mod node;
 mod open;
@@ -27,7 +28,7 @@ use super::params::{Kind, Param, ParamValues};
 use super::{Accel, BuildCx, BuildError, bvh};
 use crate::geometry::tri::TriTest;
 use crate::scene::Geometry;
-use leaf::{Patch, Plain};
+use leaf::{Indexed, Patch, Plain};
 
 /// The name it is registered by.
 const ID: &str = "wide";
@@ -36,9 +37,16 @@ const ID: &str = "wide";
 pub const PARAMS: &[Param] = &[
     bvh::PARAMS[0],
     Param {
+        id: "layout",
+        label: "Layout",
+        help: "Full: boxes and triangles as they are. Compressed: boxes in 256 steps, and leaves that refer to the model's points; half the memory, somewhat slower.",
+        unit: "",
+        kind: Kind::Choice { options: &["full", "compressed"] },
+    },
+    Param {
         id: "leaves",
         label: "Leaves",
-        help: "How triangles are packed: as patches of neighbours that share corners, or each with its own; auto looks at some.",
+        help: "How triangles are packed in the full layout: as patches of neighbours that share corners, or each with its own; auto looks at some.",
         unit: "",
         kind: Kind::Choice { options: &["auto", "patches", "plain"] },
     },
@@ -68,6 +76,9 @@ pub const PARAMS: &[Param] = &[
 /// Builds it with the leaves that the parameters ask for.
 pub fn build<T: TriTest>(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Box<dyn Accel>, BuildError> {
     let mut drafted = bvh::draft(geometry, p, cx)?;
+    if p.choice("layout") == "compressed" {
+        return Ok(Box::new(build::build::<T, Indexed>(geometry, drafted, p, cx)?));
+    }
     let patches = match p.choice("leaves") {
         "plain" => false,
         "patches" => true,

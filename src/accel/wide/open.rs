@@ -8,7 +8,7 @@
 //! visit.
 
 use super::child::Child;
-use super::node::{Met, Node};
+use super::node::Met;
 use super::slots::bits;
 use crate::accel::bvh::MAX_DEPTH;
 use crate::accel::probe::{Probe, Prune};
@@ -55,29 +55,36 @@ impl Open {
         self.children[last as usize % ROOM]
     }
 
-    /// In place of the last, a node, its children that were met, the nearest last: which is the last then.
+    /// In place of the last, a node, those of its children that were met, the nearest last: which is the last then.
     /// Slots are taken in the order of `slot ^ order`, the last first: see [`super::slots`].
     #[inline(always)]
-    pub fn replace<S: Simd>(&mut self, s: S, last: u32, node: &Node, met: &Met<S::F>, order: u32) -> u32 {
-        self.put(s, last, node, &met.entry, in_order(met.slots, order), order).wrapping_sub(1)
+    pub fn replace<S: Simd>(&mut self, s: S, last: u32, children: &[Child; LANES], met: &Met<S::F>, order: u32) -> u32 {
+        self.put(s, last, children, &met.entry, in_order(met.slots, order), order).wrapping_sub(1)
     }
 
-    /// Puts all children that were met, one at least, but the nearest, after the last: the nearest, and which
+    /// Puts all children of a node that were met, one at least, but the nearest, after the last: the nearest, and which
     /// is the last then.
     #[inline(always)]
-    pub fn keep_others<S: Simd>(&mut self, s: S, last: u32, node: &Node, met: &Met<S::F>, order: u32) -> (Child, u32) {
+    pub fn keep_others<S: Simd>(
+        &mut self,
+        s: S,
+        last: u32,
+        children: &[Child; LANES],
+        met: &Met<S::F>,
+        order: u32,
+    ) -> (Child, u32) {
         let all = in_order(met.slots, order);
         let nearest = 31 - u32::from(all).leading_zeros();
-        let child = node.children()[((nearest ^ order) & 7) as usize];
+        let child = children[((nearest ^ order) & 7) as usize];
         let others = all & !(1u32 << nearest) as u8;
-        (child, self.put(s, last + 1, node, &met.entry, others, order).wrapping_sub(1))
+        (child, self.put(s, last + 1, children, &met.entry, others, order).wrapping_sub(1))
     }
 
     /// Writes children from a place on: the first place that is free then.
     #[inline(always)]
-    fn put<S: Simd>(&mut self, s: S, at: u32, node: &Node, entry: &S::F, in_order: u8, order: u32) -> u32 {
+    fn put<S: Simd>(&mut self, s: S, at: u32, children: &[Child; LANES], entry: &S::F, in_order: u8, order: u32) -> u32 {
         let from = s.flip(s.indices(&LEFT[usize::from(in_order)]), order);
-        let children = s.permute(s.load_bits(bytemuck::cast_ref(node.children())), from);
+        let children = s.permute(s.load_bits(bytemuck::cast_ref(children)), from);
         let entries = s.permute(*entry, from);
         s.store_bits(children, bytemuck::cast_mut(eight(&mut self.children, at as usize)));
         s.store(entries, eight(&mut self.entries, at as usize));

@@ -9,9 +9,10 @@ use super::unit::Unit;
 use crate::accel::best::Best;
 use crate::accel::probe::{Probe, Prune};
 use crate::accel::{PrimHit, Query};
-use crate::geometry::tri::{Hits, TriTest, corners, splat_own};
+use crate::geometry::tri::{Hits, TriTest, splat_own};
 use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::{LANES, Lanes, Simd};
+use glam::Vec3;
 
 /// A tree to walk.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +20,8 @@ pub struct Ground<'a> {
     pub units: &'a [Unit],
     pub root: Child,
     pub bounds: &'a Aabb,
+    /// The points of the geometry.
+    pub points: &'a [Vec3],
 }
 
 /// Walks a ray of the scaled space to its end.
@@ -31,7 +34,7 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
     probe: &mut P,
     open: &mut Open,
 ) -> Option<PrimHit> {
-    let Ground { units, root, bounds } = ground;
+    let Ground { units, root, bounds, points } = ground;
     let test = T::prepare(ray, bounds);
     let order = test.slabs().forward();
     let axes = test.axes();
@@ -46,7 +49,7 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
         if child.is_node() {
             probe.node();
             probe.at(child.place());
-            let node = Node::at(units, child.place());
+            let node = B::Node::at(units, child.place());
             let met = node.meet(s, test.slabs(), best.tmin(), best.t());
             if P::LISTENS {
                 for (slot, child) in node.children().iter().enumerate() {
@@ -58,7 +61,7 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
             if met.slots == 0 {
                 (child, last) = open.pop(last);
             } else {
-                (child, last) = open.keep_others(s, last, node, &met, order);
+                (child, last) = open.keep_others(s, last, node.children(), &met, order);
             }
             continue;
         }
@@ -75,14 +78,14 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
             let block = B::at(units, child.place() + block * B::UNITS);
             let over = if P::WATCHES {
                 // Whoever watches sees every triangle.
-                bits(block.lanes()).any(|lane| best.test(&test, &block.triangle(lane), block.prim(lane), query, probe))
+                bits(block.lanes()).any(|lane| best.test(&test, &block.triangle(points, lane), block.prim(lane), query, probe))
             } else {
-                let corners = corners(s, block, axes);
+                let corners = block.corners(s, points, axes);
                 let meets = T::meet_eight(s, &own, &corners);
                 meets.any(s) && {
                     let interval = [s.splat(best.tmin()), s.splat(best.t())];
                     found.keep(s, &meets.inside(s, &in_order, interval, &corners), block.lanes());
-                    found.settle(&test, block, query, &mut best, probe)
+                    found.settle(&test, (block, points), query, &mut best, probe)
                 }
             };
             if over {
@@ -141,7 +144,7 @@ impl Found {
     pub fn settle<T: TriTest, B: Pack, Q: Query, P: Probe>(
         &self,
         test: &T,
-        block: &B,
+        (block, points): (&B, &[Vec3]),
         query: &Q,
         best: &mut Best,
         probe: &mut P,
@@ -151,7 +154,7 @@ impl Found {
             let lane = left.trailing_zeros() as usize % LANES;
             left &= left - 1;
             let over = if self.doubt >> lane & 1 == 1 {
-                best.test(test, &block.triangle(lane), block.prim(lane), query, probe)
+                best.test(test, &block.triangle(points, lane), block.prim(lane), query, probe)
             } else {
                 let hit = PrimHit { t: self.t[lane], u: self.u[lane], v: self.v[lane], prim: block.prim(lane) };
                 best.offer(hit, query)

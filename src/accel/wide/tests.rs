@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::leaf::{Patch, Plain};
+use super::leaf::{Indexed, Patch, Plain};
 use super::*;
 use crate::accel::cell::walk;
 use crate::accel::params::ParamValues;
@@ -109,6 +109,22 @@ fn patches_give_the_hits_of_brute_force_on_every_road() {
 }
 
 #[test]
+fn beams_are_no_wider_than_pays() {
+    // The same rays, up to a fortieth of the extent apart: as wide as a leaf of the one, far wider than those of the other.
+    let beams = |model: &str| {
+        let geometry = geometry(model);
+        let built = build::<Fast>(&geometry, &params(&[]), &BuildCx::unattended(2)).expect("small");
+        let (b, i) = (*geometry.world_bounds(), |i: u16| f32::from(i % 8) * 0.03 / 8.0);
+        let size = (b.max - b.min).max_element();
+        let rays: Vec<Ray> =
+            (0..800).map(|k| Ray::new(b.centre() + size * Vec3::new(i(k), 2.0, 0.0), Vec3::new(0.01, -1.0, 0.02))).collect();
+        in_beams(&*built, &rays)
+    };
+    assert_eq!(beams("builtin:terrain?triangles=2000"), 800);
+    assert_eq!(beams("builtin:terrain?triangles=1000000"), 0);
+}
+
+#[test]
 fn rays_that_are_not_valid_are_counted_however_many_there_are() {
     let geometry = geometry("builtin:teapot");
     let built = build::<Watertight>(&geometry, &params(&[]), &BuildCx::unattended(1)).expect("small");
@@ -130,6 +146,13 @@ fn plain_leaves_give_the_hits_of_brute_force_on_every_road() {
 }
 
 #[test]
+fn compressed_trees_give_the_hits_of_brute_force_on_every_road() {
+    equals_brute::<Watertight, Indexed>("builtin:teapot", &[], TestKind::Watertight);
+    equals_brute::<Fast, Indexed>("builtin:menger", &[("wide_leaf", "20")], TestKind::Fast);
+    equals_brute::<Watertight, Indexed>("builtin:soup?triangles=3000", &[("wide_leaf", "32")], TestKind::Watertight);
+}
+
+#[test]
 fn auto_takes_patches_for_meshes_and_plain_leaves_for_soups() {
     for (model, expected) in [("builtin:terrain?triangles=2000", "patches"), ("builtin:soup?triangles=2000", "plain")] {
         let built = build::<Watertight>(&geometry(model), &params(&[]), &BuildCx::unattended(1)).expect("small");
@@ -141,9 +164,12 @@ fn auto_takes_patches_for_meshes_and_plain_leaves_for_soups() {
 #[test]
 fn a_mesh_takes_no_more_bytes_than_promised() {
     let geometry = geometry("builtin:terrain?triangles=20000");
-    let built = build::<Watertight>(&geometry, &params(&[]), &BuildCx::unattended(1)).expect("small");
-    let bytes: u64 = built.memory().iter().map(|part| part.bytes).sum();
-    assert!(bytes <= 70 * geometry.live_count() as u64, "{bytes} bytes");
+    for (layout, most) in [("full", 70), ("compressed", 36)] {
+        let p = params(&[("layout", layout)]);
+        let built = build::<Watertight>(&geometry, &p, &BuildCx::unattended(1)).expect("small");
+        let bytes: u64 = built.memory().iter().map(|part| part.bytes).sum();
+        assert!(bytes <= most * geometry.live_count() as u64, "{layout}: {bytes} bytes");
+    }
 }
 
 #[test]

@@ -20,6 +20,7 @@ use crate::geometry::{Aabb, Ray};
 use crate::scene::{Geometry, PrimRef};
 use crate::simd::{Kernel, Portable, Road, Simd};
 use crate::task::{Cancel, Cancelled, Charge};
+use glam::Vec3;
 
 /// A BVH of eight children a node, traced with the triangle test `T`, triangles packed as `B`.
 #[derive(Debug)]
@@ -42,11 +43,23 @@ pub struct Tree<T, B> {
 }
 
 impl<T: TriTest, B: Pack> Tree<T, B> {
+    /// The points of the geometry.
+    #[inline(always)]
+    pub fn points(&self) -> &[Vec3] {
+        self.geometry.indexed().0
+    }
+
+    /// The cache lines that a node or a block takes at most, wherever it begins.
+    const LINES: usize = {
+        let (node, block) = (size_of::<B::Node>(), size_of::<B>());
+        ((if node > block { node } else { block }) + 64 - unit::BYTES).div_ceil(64)
+    };
+
     /// Asks for what a ray visits next. No branch: whether that is a node is not known yet.
     #[inline(always)]
     pub fn prefetch<S: Simd>(&self, s: S, child: Child) {
         let at = self.units.as_ptr().addr() + child.place() as usize * unit::BYTES;
-        for line in 0..4 {
+        for line in 0..Self::LINES {
             s.prefetch(at + line * 64);
         }
     }
@@ -56,7 +69,8 @@ impl<T: TriTest, B: Pack> Tree<T, B> {
         if self.root == Child::NONE {
             return None;
         }
-        let ground = Ground { units: &self.units, root: self.root, bounds: self.geometry.bounds() };
+        let (units, points) = (&self.units[..], self.points());
+        let ground = Ground { units, root: self.root, bounds: self.geometry.bounds(), points };
         ray::walk::<S, T, B, Q, P>(s, ground, ray, query, probe, open)
     }
 
@@ -165,9 +179,11 @@ impl<T: TriTest, B: Pack> Cells for Tree<T, B> {
         if cell.is_leaf() {
             return;
         }
-        let node = Node::at(&self.units, cell.id.node);
+        let node = B::Node::at(&self.units, cell.id.node);
         for (slot, child) in node.children().iter().enumerate().filter(|(_, child)| **child != Child::NONE) {
-            if each(self.cell(*child, node.bounds(slot), cell.depth + 1)).is_break() {
+            // A ray visits what lies in the boxes of all nodes above.
+            let bounds = node.bounds(slot).intersection(*cell.shape.bounds());
+            if each(self.cell(*child, bounds, cell.depth + 1)).is_break() {
                 return;
             }
         }
@@ -194,7 +210,7 @@ impl<T: TriTest, B: Pack> Cells for Tree<T, B> {
     }
 
     fn memory(&self) -> Vec<MemoryPart> {
-        let nodes = self.nodes * size_of::<Node>();
+        let nodes = self.nodes * size_of::<B::Node>();
         let triangles = size_of_val(&self.units[..]) - nodes;
         vec![MemoryPart { name: "nodes", bytes: nodes as u64 }, MemoryPart { name: "packed triangles", bytes: triangles as u64 }]
     }

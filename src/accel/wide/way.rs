@@ -1,6 +1,6 @@
 //! Rays made ready eight at a time, and each on its way among others.
 
-use super::beam::{Beam, Eight, Spread};
+use super::beam::{Beam, Eight, Limits, Spread};
 use super::child::Child;
 use super::open::Open;
 use super::ray::Found;
@@ -120,6 +120,7 @@ impl Way {
 pub struct Rest<'a> {
     geometry: &'a Geometry,
     rays: &'a [Ray],
+    limits: Limits,
     next: usize,
     ready: [Ready; LANES],
     /// Those of them that are not taken yet, a bit for each.
@@ -153,7 +154,8 @@ const NO_RAY: Ray = Ray::new(Vec3::ZERO, Vec3::ZERO);
 
 impl<'a> Rest<'a> {
     pub fn new(geometry: &'a Geometry, rays: &'a [Ray]) -> Self {
-        Self { geometry, rays, next: 0, ready: [Ready::NONE; LANES], left: 0, traced: Traced::default() }
+        let limits = Limits::new(geometry.live_count());
+        Self { geometry, rays, limits, next: 0, ready: [Ready::NONE; LANES], left: 0, traced: Traced::default() }
     }
 
     /// The next that may hit anything and is to go its own way.
@@ -220,7 +222,7 @@ impl<'a> Rest<'a> {
                 s.store(others, &mut spread.others);
                 // One octant, and one order of axes.
                 let alike = same(s, order) && same(s, own[6]);
-                if alike && spread.is_narrow() {
+                if alike && spread.is_narrow(&self.limits) {
                     beam.begin::<T, S>(s, &Eight { rays: eight, slabs, own, scales }, &spread, first, root);
                     self.traced.in_beams += LANES as u64;
                     return true;
