@@ -6,7 +6,7 @@ mod pages;
 #[cfg(all(feature = "peers", target_arch = "x86_64", not(target_env = "msvc")))]
 pub mod tinybvh;
 
-pub use pages::list_in_large_pages;
+pub use pages::{list_in_large_pages, zeros_in_large_pages};
 
 use std::path::Path;
 

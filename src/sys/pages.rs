@@ -2,6 +2,8 @@
 //! as fetching it.
 #![expect(unsafe_code)]
 
+use bytemuck::Zeroable;
+
 /// The least size of a list for which it is worth asking.
 const WORTH_BYTES: usize = 4 << 20;
 
@@ -12,6 +14,16 @@ pub fn list_in_large_pages<T>(capacity: usize) -> Vec<T> {
     let bytes = list.capacity() * size_of::<T>();
     if bytes >= WORTH_BYTES {
         advise(list.as_ptr().cast(), bytes);
+    }
+    list
+}
+
+/// A list of `n` zeros, in large pages where the system grants them. Fresh memory is cleared when it is first
+/// written to, so several threads that fill it share that work.
+pub fn zeros_in_large_pages<T: Zeroable>(n: usize) -> Vec<T> {
+    let list = bytemuck::zeroed_vec::<T>(n);
+    if size_of_val(&list[..]) >= WORTH_BYTES {
+        advise(list.as_ptr().cast(), size_of_val(&list[..]));
     }
     list
 }
@@ -36,6 +48,14 @@ fn advise(_: *const u8, _: usize) {}
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn zeros_are_zeros() {
+        for n in [0, 3, 3 << 20] {
+            let list = zeros_in_large_pages::<u64>(n);
+            assert!(list.len() == n && list.iter().all(|x| *x == 0));
+        }
+    }
 
     #[test]
     fn lists_hold_what_they_are_filled_with() {

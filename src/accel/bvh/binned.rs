@@ -6,10 +6,12 @@ use rayon::prelude::*;
 
 use super::boxes::{Bounds, PrimBox};
 use super::costs::Costs;
+use super::few;
 use super::slice::{Heuristic, Slice};
 use super::topdown::Divided;
 use crate::accel::{BuildCx, BuildError};
-use crate::geometry::num;
+use crate::simd::{Kernel, Road, Simd};
+use glam::{IVec4, Mat4, Vec4};
 
 /// The most buckets on an axis.
 pub const MAX_BINS: u32 = 64;
@@ -29,15 +31,16 @@ pub struct BinRule {
     axis: usize,
     origin: f32,
     per_unit: f32,
-    first_right: u32,
+    /// The number, as [`Scale::places`] has it.
+    first_right: f32,
 }
 
 impl BinRule {
     /// Whether the triangle belongs to the left child.
     #[inline(always)]
     pub fn goes_left(&self, prim: &PrimBox) -> bool {
-        // In buckets, the least centre at 0; the greatest is a hair below their number.
-        bucket((prim.centre_twice()[self.axis] - self.origin) * self.per_unit) < self.first_right
+        // What is cut off of places at either end lies on the same side of the plane.
+        (prim.centre_twice()[self.axis] - self.origin) * self.per_unit + WHOLE < self.first_right
     }
 }
 
@@ -52,66 +55,136 @@ pub struct BinSplit {
     pub sides: [Bounds; 2],
 }
 
+/// Added to a number of no more than 2^22, this rounds it to a whole one, which is then found in the lowest bits.
+const WHOLE: f32 = (1u32 << 23) as f32;
+
+/// The whole number.
+#[inline(always)]
+const fn bucket(x: f32) -> usize {
+    (x.to_bits() & 0xff) as usize
+}
+
 /// From centres to buckets on all axes.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
-    origin: glam::Vec4,
+    /// The middle of the first bucket: numbers are rounded, not cut.
+    origin: Vec4,
     /// Buckets per doubled unit; 0 on an axis where all centres are equal.
-    per_unit: glam::Vec4,
-    bins: usize,
+    per_unit: Vec4,
+    last: Vec4,
 }
 
 impl Scale {
     fn new(centres: &Bounds, bins: usize) -> Self {
-        // A hair less than `bins`, so that the greatest centre falls into the last bucket; a width
-        // too small for its reciprocal counts as none.
-        let width = bins as f32 * (1.0 - 4.0 * f32::EPSILON);
-        let per_unit = |size: f32| if (width / size).is_finite() { width / size } else { 0.0 };
+        // A width too small for its reciprocal counts as none.
+        let per_unit = |size: f32| if (bins as f32 / size).is_finite() { bins as f32 / size } else { 0.0 };
         let size = centres.size();
-        let per_unit = glam::Vec4::new(per_unit(size.x), per_unit(size.y), per_unit(size.z), 0.0);
-        Self { origin: centres.min(), per_unit, bins }
+        let per_unit = Vec4::new(per_unit(size.x), per_unit(size.y), per_unit(size.z), 0.0);
+        Self { origin: centres.min() + size * (0.5 / bins as f32), per_unit, last: Vec4::splat((bins - 1) as f32) }
     }
 
     fn rule(&self, axis: usize, first_right: usize) -> BinRule {
-        BinRule { axis, origin: self.origin[axis], per_unit: self.per_unit[axis], first_right: num::index(first_right) }
+        BinRule { axis, origin: self.origin[axis], per_unit: self.per_unit[axis], first_right: WHOLE + first_right as f32 }
     }
 
+    /// The buckets on all axes.
     #[inline(always)]
     fn buckets(&self, prim: &PrimBox) -> [usize; 3] {
         let at = (prim.centre_twice() - self.origin) * self.per_unit;
-        [at.x, at.y, at.z].map(|x| (bucket(x) as usize).min(self.bins - 1))
+        // The fourth lane holds nothing of meaning, and is not looked at.
+        let places = at.max(Vec4::ZERO).min(self.last) + Vec4::splat(WHOLE);
+        let [x, y, z, _] = places.to_array();
+        [bucket(x), bucket(y), bucket(z)]
     }
 }
 
-/// The bucket of a place in them.
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-const fn bucket(x: f32) -> u32 {
-    x as u32
-}
-
-/// The buckets of an axis.
+/// The buckets of all axes side by side, so that one step looks at three planes.
 #[derive(Clone, Copy)]
 struct Bins<const N: usize> {
-    bounds: [Bounds; N],
-    counts: [u32; N],
+    bounds: [[Bounds; 3]; N],
+    /// Whole numbers with a sign, since a processor turns those into floats at once.
+    counts: [IVec4; N],
 }
 
 impl<const N: usize> Bins<N> {
-    const EMPTY: Self = Self { bounds: [Bounds::EMPTY; N], counts: [0; N] };
+    const EMPTY: Self = Self { bounds: [[Bounds::EMPTY; 3]; N], counts: [IVec4::ZERO; N] };
 
+    /// Sorts triangles into the buckets of all axes in one pass.
     #[inline(always)]
-    fn add(&mut self, at: usize, bounds: Bounds) {
-        self.bounds[at] = self.bounds[at].union(bounds);
-        self.counts[at] += 1;
+    fn count(&mut self, prims: &[PrimBox], scale: &Scale) {
+        for prim in prims {
+            let bounds = prim.bounds();
+            for (axis, at) in scale.buckets(prim).into_iter().enumerate() {
+                let at = at % N;
+                self.bounds[at][axis] = self.bounds[at][axis].union(bounds);
+                self.counts[at][axis] += 1;
+            }
+        }
     }
 
     fn join(&mut self, other: &Self) {
         for i in 0..N {
-            self.bounds[i] = self.bounds[i].union(other.bounds[i]);
+            self.bounds[i] = union(&self.bounds[i], &other.bounds[i]);
             self.counts[i] += other.counts[i];
         }
     }
+
+    /// The box of some buckets of an axis, and how many triangles there are in them.
+    #[inline(always)]
+    fn side(&self, axis: usize, from: usize, to: usize) -> (Bounds, i32) {
+        let (mut bounds, mut count) = (Bounds::EMPTY, 0);
+        for i in from..to {
+            bounds = bounds.union(self.bounds[i][axis]);
+            count += self.counts[i][axis];
+        }
+        (bounds, count)
+    }
+
+    /// On each axis, among the first `n` buckets: the first on the right of the plane with the least `half area *
+    /// count` summed over both sides; the axis and that bucket of the least of all. `None` if all triangles fall into
+    /// one bucket on every axis. One sweep from the right, one from the left; areas in units of the
+    /// whole box, whatever its size.
+    #[inline(always)]
+    fn cheapest(&self, n: usize, whole: &Bounds) -> Option<(usize, usize)> {
+        let unit = 1.0 / whole.size().truncate().max_element();
+        let mut right = [Vec4::ZERO; N];
+        let (mut side, mut count) = ([Bounds::EMPTY; 3], IVec4::ZERO);
+        for i in (1..n).rev() {
+            side = union(&side, &self.bounds[i]);
+            count += self.counts[i];
+            // Where there is nothing this is no number, and never less than another.
+            right[i] = half_areas(&side, unit) * count.as_vec4();
+        }
+        let (mut least, mut first_right) = (Vec4::INFINITY, Vec4::ZERO);
+        (side, count) = ([Bounds::EMPTY; 3], IVec4::ZERO);
+        for (i, right) in right.iter().enumerate().take(n).skip(1) {
+            side = union(&side, &self.bounds[i - 1]);
+            count += self.counts[i - 1];
+            let cost = half_areas(&side, unit) * count.as_vec4() + *right;
+            let less = cost.cmplt(least);
+            least = Vec4::select(less, cost, least);
+            first_right = Vec4::select(less, Vec4::splat(WHOLE + i as f32), first_right);
+        }
+        let (least, first_right) = (least.to_array(), first_right.to_array());
+        let best = if least[1] < least[0] { 1 } else { 0 };
+        let best = if least[2] < least[best] { 2 } else { best };
+        (least[best] < f32::INFINITY).then_some((best, bucket(first_right[best])))
+    }
+}
+
+#[inline(always)]
+fn union(a: &[Bounds; 3], b: &[Bounds; 3]) -> [Bounds; 3] {
+    [a[0].union(b[0]), a[1].union(b[1]), a[2].union(b[2])]
+}
+
+/// Half the surface areas of three boxes.
+#[inline(always)]
+fn half_areas(boxes: &[Bounds; 3], unit: f32) -> Vec4 {
+    let [a, b, c] = boxes;
+    let (a, b, c) = (a.size() * unit, b.size() * unit, c.size() * unit);
+    let by_axis = Mat4::from_cols(a, b, c, c).transpose();
+    let (x, y, z) = (by_axis.x_axis, by_axis.y_axis, by_axis.z_axis);
+    x * (y + z) + y * z
 }
 
 /// Triangles from which on a node is binned in parallel, and in what portions.
@@ -121,13 +194,19 @@ const CHUNK: usize = 1 << 13;
 impl Binned {
     /// The best plane between buckets; `None` if all centres fall into one on every axis. Few
     /// triangles fill few buckets, and clearing all would cost more than filling those.
-    pub fn best(&self, prims: &[PrimBox], centres: &Bounds, cx: &BuildCx) -> Result<Option<BinSplit>, BuildError> {
+    pub fn best(
+        &self,
+        prims: &[PrimBox],
+        bounds: &Bounds,
+        centres: &Bounds,
+        cx: &BuildCx,
+    ) -> Result<Option<BinSplit>, BuildError> {
         let bins = (self.bins as usize).min(2 * prims.len()).max(2);
         match (prims.len(), bins) {
-            (0..=4, _) => self.among::<8>(bins.min(8), prims, centres, cx),
-            (_, 0..=16) | (5..=64, _) => self.among::<16>(bins.min(16), prims, centres, cx),
-            (_, 0..=32) => self.among::<32>(bins, prims, centres, cx),
-            _ => self.among::<{ MAX_BINS as usize }>(bins, prims, centres, cx),
+            (0..=4, _) => self.among::<8>(bins.min(8), prims, bounds, centres, cx),
+            (_, 0..=16) | (5..=64, _) => self.among::<16>(bins.min(16), prims, bounds, centres, cx),
+            (_, 0..=32) => self.among::<32>(bins, prims, bounds, centres, cx),
+            _ => self.among::<{ MAX_BINS as usize }>(bins, prims, bounds, centres, cx),
         }
     }
 
@@ -135,89 +214,89 @@ impl Binned {
         &self,
         bins: usize,
         prims: &[PrimBox],
+        bounds: &Bounds,
         centres: &Bounds,
         cx: &BuildCx,
     ) -> Result<Option<BinSplit>, BuildError> {
         let scale = Scale::new(centres, bins);
-        let mut counted = [Bins::<N>::EMPTY; 3];
-        if prims.len() < PARALLEL {
-            count(prims, &scale, &mut counted);
-        } else {
-            counted = count_in_parallel(prims, &scale, cx)?;
+        let whole = if prims.len() < PARALLEL { None } else { Some(count_in_parallel::<N>(prims, &scale, cx)?) };
+        let best = Road::best().run(Best { prims, bounds, scale: &scale, bins, counted: whole });
+        Ok(best.map(|(axis, first_right, [(left, on_left), (right, on_right)])| {
+            let children = left.half_area() * f64::from(on_left) + right.half_area() * f64::from(on_right);
+            BinSplit { rule: scale.rule(axis, first_right), children, sides: [left, right] }
+        }))
+    }
+}
+
+/// Looks for the best plane with the instructions of the road: no vector is longer than four, but none has to be
+/// copied before it is changed.
+struct Best<'a, const N: usize> {
+    prims: &'a [PrimBox],
+    bounds: &'a Bounds,
+    scale: &'a Scale,
+    bins: usize,
+    /// If that is done already.
+    counted: Option<Bins<N>>,
+}
+
+impl<const N: usize> Kernel for Best<'_, N> {
+    /// The axis, the first bucket on the right, and the box and the number of triangles of both sides.
+    type Out = Option<(usize, usize, [(Bounds, i32); 2])>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) -> Self::Out {
+        let mut counted = Bins::EMPTY;
+        match &self.counted {
+            Some(all) => counted = *all,
+            None => counted.count(self.prims, self.scale),
         }
-        let mut best: Option<BinSplit> = None;
-        for (axis, bins_on_axis) in counted.iter().enumerate() {
-            let least = best.map_or(f64::INFINITY, |b| b.children);
-            if let Some((children, first_right, sides)) = cheapest(bins_on_axis, bins, least) {
-                best = Some(BinSplit { rule: scale.rule(axis, first_right), children, sides });
-            }
-        }
-        Ok(best)
+        let (axis, first_right) = counted.cheapest(self.bins, self.bounds)?;
+        let sides = [counted.side(axis, 0, first_right), counted.side(axis, first_right, self.bins)];
+        Some((axis, first_right, sides))
+    }
+}
+
+/// The same of the counting alone.
+struct Count<'a, const N: usize> {
+    prims: &'a [PrimBox],
+    scale: &'a Scale,
+    into: &'a mut Bins<N>,
+}
+
+impl<const N: usize> Kernel for Count<'_, N> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        self.into.count(self.prims, self.scale);
     }
 }
 
 impl Heuristic for Binned {
     fn divide<'a>(&self, slice: Slice<'a>, may_be_leaf: bool, cx: &BuildCx) -> Result<Divided<Slice<'a>>, BuildError> {
-        let best = self.best(slice.prims, &slice.centres, cx)?;
+        if slice.prims.len() <= few::MOST {
+            return Ok(few::divide(slice, may_be_leaf, &self.costs));
+        }
+        let best = self.best(slice.prims, &slice.bounds, &slice.centres, cx)?;
         let pays = |split: &BinSplit| {
             !may_be_leaf || self.costs.split(slice.bounds.half_area(), split.children) < self.costs.leaf(&slice)
         };
         let Some(split) = best.filter(pays) else { return Ok(Divided::Whole(slice)) };
-        let (left, right) = slice.partition(|p| split.rule.goes_left(p));
+        let (left, right) = slice.partition_known(|p| split.rule.goes_left(p), split.sides);
         Ok(Divided::Two(left, right))
     }
 }
 
-/// Sorts the triangles into the buckets of all axes in one pass.
-fn count<const N: usize>(prims: &[PrimBox], scale: &Scale, bins: &mut [Bins<N>; 3]) {
-    for prim in prims {
-        let ([x, y, z], bounds) = (scale.buckets(prim), prim.bounds());
-        bins[0].add(x, bounds);
-        bins[1].add(y, bounds);
-        bins[2].add(z, bounds);
-    }
-}
-
-fn count_in_parallel<const N: usize>(prims: &[PrimBox], scale: &Scale, cx: &BuildCx) -> Result<[Bins<N>; 3], BuildError> {
-    let chunk = |mut bins: [Bins<N>; 3], prims: &[PrimBox]| {
+fn count_in_parallel<const N: usize>(prims: &[PrimBox], scale: &Scale, cx: &BuildCx) -> Result<Bins<N>, BuildError> {
+    let chunk = |mut bins: Bins<N>, prims: &[PrimBox]| {
         cx.cancel.check()?;
-        count(prims, scale, &mut bins);
+        Road::best().run(Count { prims, scale, into: &mut bins });
         Ok(bins)
     };
-    let join = |mut a: [Bins<N>; 3], b: [Bins<N>; 3]| {
-        a.iter_mut().zip(&b).for_each(|(a, b)| a.join(b));
+    let join = |mut a: Bins<N>, b: Bins<N>| {
+        a.join(&b);
         Ok(a)
     };
-    let none = || [Bins::EMPTY; 3];
+    let none = || Bins::EMPTY;
     prims.par_chunks(CHUNK).try_fold(none, chunk).try_reduce(none, join)
-}
-
-/// Among the first `n` buckets: the first on the right of the plane with the least `half area *
-/// count` summed over both sides, that sum, and the sides' boxes; `None` if all triangles fall into
-/// one bucket, or if no plane costs less than `least`. One sweep from the right, one from the left.
-fn cheapest<const N: usize>(bins: &Bins<N>, n: usize, least: f64) -> Option<(f64, usize, [Bounds; 2])> {
-    let mut right_cost = [f64::INFINITY; N];
-    let (mut side, mut count) = (Bounds::EMPTY, 0);
-    for i in (1..n).rev() {
-        side = side.union(bins.bounds[i]);
-        count += bins.counts[i];
-        if count > 0 {
-            right_cost[i] = side.half_area() * f64::from(count);
-        }
-    }
-    let (mut left, mut count) = (Bounds::EMPTY, 0);
-    let mut best: Option<(f64, usize, Bounds)> = None;
-    for (first_right, right_cost) in right_cost.iter().enumerate().take(n).skip(1) {
-        left = left.union(bins.bounds[first_right - 1]);
-        count += bins.counts[first_right - 1];
-        if count > 0 {
-            let cost = left.half_area() * f64::from(count) + right_cost;
-            if cost < best.map_or(least, |b| b.0) {
-                best = Some((cost, first_right, left));
-            }
-        }
-    }
-    let (cost, first_right, left) = best?;
-    let right = bins.bounds[first_right..n].iter().fold(Bounds::EMPTY, |b, bin| b.union(*bin));
-    Some((cost, first_right, [left, right]))
 }

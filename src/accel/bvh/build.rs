@@ -157,7 +157,7 @@ impl Plan {
         }?;
         // Before the nodes exist twice.
         drop(prims);
-        let draft = tree.joined();
+        let draft = cx.pool.run(|| tree.joined());
         if !self.needs_leaves() {
             return Ok(draft);
         }

@@ -51,7 +51,7 @@ impl Draft {
         let arranged = cx.pool.run(|| arranger.subtree(0, 0))?;
         // The nodes are to exist no more than twice.
         drop((summaries, self));
-        Ok(arranged.joined())
+        Ok(cx.pool.run(|| arranged.joined()))
     }
 }
 

@@ -10,6 +10,7 @@ mod boxes;
 mod build;
 mod costs;
 mod draft;
+mod few;
 mod lbvh;
 mod median;
 mod morton;

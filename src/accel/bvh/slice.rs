@@ -18,17 +18,22 @@ pub struct Slice<'a> {
 impl<'a> Slice<'a> {
     /// Of a whole list; a long one is looked through in parallel.
     pub fn new(prims: &'a mut [PrimBox]) -> Self {
-        let sides = Side::of_all(prims);
-        Self { prims, bounds: sides.bounds, centres: sides.centres }
+        let (bounds, centres) = (bounds_of(prims), centres_of(prims));
+        Self { prims, bounds, centres }
     }
 
-    /// Moves what goes left to the front; the boxes of both sides are gathered on the way. `None` of
-    /// the two may be empty.
+    /// Moves what goes left to the front. `None` of the two may be empty.
     pub fn partition(self, goes_left: impl Fn(&PrimBox) -> bool + Sync) -> (Self, Self) {
+        let (left, right) = self.partition_known(goes_left, [Bounds::EMPTY; 2]);
+        (Self { bounds: bounds_of(left.prims), ..left }, Self { bounds: bounds_of(right.prims), ..right })
+    }
+
+    /// The same where the boxes of both sides are known; those of the centres are gathered on the way.
+    pub fn partition_known(self, goes_left: impl Fn(&PrimBox) -> bool + Sync, sides: [Bounds; 2]) -> (Self, Self) {
         let (count, [left, right]) = partition(self.prims, &goes_left);
         debug_assert!(0 < count && count < self.prims.len(), "a split with an empty side");
         let (l, r) = self.prims.split_at_mut(count);
-        (left.of(l), right.of(r))
+        (Self { prims: l, bounds: sides[0], centres: left }, Self { prims: r, bounds: sides[1], centres: right })
     }
 
     /// The object median along an axis, ties by number.
@@ -49,13 +54,13 @@ impl<'a> Slice<'a> {
 /// Triangles from which on a list is handled in two halves, side by side.
 const PARALLEL: usize = 1 << 15;
 
-/// How many go left, and what is gathered of both sides. Halves are partitioned side by side, then
+/// How many go left, and the boxes of the centres of both sides. Halves are partitioned side by side, then
 /// what is on the wrong side of the place where they meet changes places:
 ///
 /// ```text
 /// L1 L1 L1 R1 R1 | L2 R2 R2 R2    ─►    L1 L1 L1 L2 R1 | R1 R2 R2 R2
 /// ```
-fn partition(prims: &mut [PrimBox], goes_left: &(impl Fn(&PrimBox) -> bool + Sync)) -> (usize, [Side; 2]) {
+fn partition(prims: &mut [PrimBox], goes_left: &(impl Fn(&PrimBox) -> bool + Sync)) -> (usize, [Bounds; 2]) {
     if prims.len() < PARALLEL {
         return partition_here(prims, goes_left);
     }
@@ -64,60 +69,42 @@ fn partition(prims: &mut [PrimBox], goes_left: &(impl Fn(&PrimBox) -> bool + Syn
     let ((l1, a), (l2, b)) = rayon::join(|| partition(first, goes_left), || partition(second, goes_left));
     let misplaced = (middle - l1).min(l2);
     first[l1..l1 + misplaced].swap_with_slice(&mut second[l2 - misplaced..l2]);
-    (l1 + l2, [a[0].join(b[0]), a[1].join(b[1])])
+    (l1 + l2, [a[0].union(b[0]), a[1].union(b[1])])
 }
 
-/// From both ends, by one thread.
-fn partition_here(prims: &mut [PrimBox], goes_left: &impl Fn(&PrimBox) -> bool) -> (usize, [Side; 2]) {
-    let (mut lo, mut hi) = (0, prims.len());
-    let (mut left, mut right) = (Side::EMPTY, Side::EMPTY);
-    loop {
-        while lo < hi && goes_left(&prims[lo]) {
-            left = left.with(&prims[lo]);
-            lo += 1;
-        }
-        while lo < hi && !goes_left(&prims[hi - 1]) {
-            right = right.with(&prims[hi - 1]);
-            hi -= 1;
-        }
-        if lo >= hi {
-            return (lo, [left, right]);
-        }
-        prims.swap(lo, hi - 1);
+/// By one thread, without a branch that depends on where a triangle goes: half of those would be foreseen wrongly.
+/// Each changes places with the first of those that go right, itself if it does.
+fn partition_here(prims: &mut [PrimBox], goes_left: &impl Fn(&PrimBox) -> bool) -> (usize, [Bounds; 2]) {
+    let (mut count, mut centres) = (0, [Bounds::EMPTY; 2]);
+    for i in 0..prims.len() {
+        let prim = prims[i];
+        let left = goes_left(&prim);
+        prims[i] = prims[count];
+        prims[count] = prim;
+        count += usize::from(left);
+        let side = &mut centres[usize::from(!left)];
+        *side = side.with(prim.centre_twice());
     }
+    (count, centres)
 }
 
-/// What is gathered of one side of a partition.
-#[derive(Clone, Copy)]
-struct Side {
-    bounds: Bounds,
-    centres: Bounds,
+/// The box around triangles; of many by several threads.
+fn bounds_of(prims: &[PrimBox]) -> Bounds {
+    in_halves(prims, |prims| prims.iter().fold(Bounds::EMPTY, |b, prim| b.union(prim.bounds())))
 }
 
-impl Side {
-    const EMPTY: Self = Self { bounds: Bounds::EMPTY, centres: Bounds::EMPTY };
+/// The box around their centres, doubled.
+fn centres_of(prims: &[PrimBox]) -> Bounds {
+    in_halves(prims, |prims| prims.iter().fold(Bounds::EMPTY, |b, prim| b.with(prim.centre_twice())))
+}
 
-    #[inline(always)]
-    fn with(self, prim: &PrimBox) -> Self {
-        Self { bounds: self.bounds.union(prim.bounds()), centres: self.centres.with(prim.centre_twice()) }
+fn in_halves(prims: &[PrimBox], of: impl Fn(&[PrimBox]) -> Bounds + Copy + Sync) -> Bounds {
+    if prims.len() < PARALLEL {
+        return of(prims);
     }
-
-    fn join(self, other: Self) -> Self {
-        Self { bounds: self.bounds.union(other.bounds), centres: self.centres.union(other.centres) }
-    }
-
-    fn of_all(prims: &[PrimBox]) -> Self {
-        if prims.len() < PARALLEL {
-            return prims.iter().fold(Self::EMPTY, Self::with);
-        }
-        let (first, second) = prims.split_at(prims.len() / 2);
-        let (a, b) = rayon::join(|| Self::of_all(first), || Self::of_all(second));
-        a.join(b)
-    }
-
-    fn of(self, prims: &mut [PrimBox]) -> Slice<'_> {
-        Slice { prims, bounds: self.bounds, centres: self.centres }
-    }
+    let (first, second) = prims.split_at(prims.len() / 2);
+    let (a, b) = rayon::join(|| in_halves(first, of), || in_halves(second, of));
+    a.union(b)
 }
 
 /// Where to divide a slice.
@@ -181,8 +168,8 @@ mod tests {
             assert_eq!(left.prims.len(), expected, "{n} {share}");
             assert!(left.prims.iter().all(goes_left) && !right.prims.iter().any(goes_left));
             for side in [left, right] {
-                let again = Side::of_all(side.prims);
-                assert_eq!((side.bounds.aabb(), side.centres.aabb()), (again.bounds.aabb(), again.centres.aabb()));
+                let (bounds, centres) = (bounds_of(side.prims), centres_of(side.prims));
+                assert_eq!((side.bounds.aabb(), side.centres.aabb()), (bounds.aabb(), centres.aabb()));
             }
             let mut all: Vec<u32> = prims.iter().map(PrimBox::prim).collect();
             all.sort_unstable();

@@ -23,7 +23,7 @@ use glam::Vec3;
 pub const MAX_DEPTH: u32 = 64;
 
 /// 32 bytes: two to a cache line, siblings together.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub struct Node {
     min: Vec3,

@@ -17,7 +17,7 @@ use crate::accel::{BuildCx, BuildError};
 use crate::geometry::{Aabb, num};
 use crate::scene::{Geometry, PrimRef};
 use crate::simd::{LANES, Road};
-use crate::sys::list_in_large_pages;
+use crate::sys::zeros_in_large_pages;
 use crate::task::OverBudget;
 use rayon::prelude::*;
 
@@ -117,8 +117,8 @@ impl<N: Node> Packed<N> {
         }
     }
 
-    /// Moves all that is below a child `by` units on.
-    fn moved(&mut self, root: Child, by: u32) -> Child {
+    /// Moves what nodes refer to, from this child on, `by` units on.
+    fn move_all(&mut self, root: Child, by: u32) {
         let mut open = vec![root];
         while let Some(child) = open.pop().filter(|child| child.is_node()) {
             let node = N::at_mut(&mut self.units, child.place());
@@ -127,7 +127,6 @@ impl<N: Node> Packed<N> {
                 node.refer(slot, node.children()[slot].moved(by));
             }
         }
-        root.moved(by)
     }
 }
 
@@ -164,18 +163,27 @@ impl<N: Node> Parts<N> {
             });
         }
         let _twice = cx.budget.charge((2 * units * unit::BYTES) as u64).map_err(too_large)?;
-        let mut whole = Packed { nodes: upper.nodes, ..Packed::new(list_in_large_pages(units)) };
-        whole.units.append(&mut upper.units);
-        let mut root = Child::node(0);
-        for Below { slot, mut list, root: child } in below {
-            let child = list.moved(child, num::index(whole.units.len()));
-            whole.refer(slot, child);
-            if slot.is_none() {
-                root = child;
+        let mut whole = Packed { nodes: upper.nodes, ..Packed::new(zeros_in_large_pages(units)) };
+        let (first, mut rest) = whole.units.split_at_mut(upper.units.len());
+        let (mut root, mut place, mut rooms) = (Child::node(0), first.len(), Vec::with_capacity(below.len()));
+        for part in &below {
+            let (room, others) = std::mem::take(&mut rest).split_at_mut(part.list.units.len());
+            let by = num::index(place);
+            upper.refer(part.slot, part.root.moved(by));
+            if part.slot.is_none() {
+                root = part.root.moved(by);
             }
-            whole.units.append(&mut list.units);
-            whole.nodes += list.nodes;
+            place += room.len();
+            rest = others;
+            rooms.push((room, by));
         }
+        first.copy_from_slice(&upper.units);
+        whole.nodes += below.iter().map(|part| part.list.nodes).sum::<usize>();
+        let write = |(Below { mut list, root, .. }, (room, by)): (Below<N>, (&mut [Unit], u32))| {
+            list.move_all(root, by);
+            room.copy_from_slice(&list.units);
+        };
+        cx.pool.run(|| below.into_par_iter().zip(rooms).for_each(write));
         Ok((whole, root))
     }
 }
@@ -205,13 +213,16 @@ impl Packer<'_> {
             let used = slots.iter().enumerate().filter(|(_, (child, _))| *child != Child::NONE);
             open.extend(used.map(|(slot, (child, _))| Part { from: child.place(), slot: Some((place, slot)) }));
         }
-        let pack = |part: &Part| {
-            let mut list = Packed::new(Vec::new());
-            let root = self.child::<B>(part.from, &mut list, &mut Vec::new())?;
-            list.units.shrink_to_fit();
-            Ok(Below { slot: part.slot, list, root })
+        // A list that grows is moved again and again: each thread keeps one for all of its parts.
+        let pack = |list: &mut Packed<B::Node>, part: &Part| {
+            let root = self.child::<B>(part.from, list, &mut Vec::new())?;
+            let packed = Packed { nodes: list.nodes, ..Packed::new(list.units.clone()) };
+            list.units.clear();
+            list.nodes = 0;
+            Ok(Below { slot: part.slot, list: packed, root })
         };
-        let below: Result<Vec<_>, BuildError> = self.cx.pool.run(|| parts.par_iter().map(pack).collect());
+        let none = || Packed::new(Vec::new());
+        let below: Result<Vec<_>, BuildError> = self.cx.pool.run(|| parts.par_iter().map_init(none, pack).collect());
         Ok(Parts { upper, below: below? })
     }
 

@@ -108,26 +108,45 @@ struct Corners {
     prims: [PrimRef; LANES],
 }
 
+/// Triangles of a leaf among which the next one of a patch is chosen.
+const MOST_LEFT: usize = 16;
+
+/// Stands for a point that is not yet among the eight.
+const UNKNOWN: u8 = u8::MAX;
+
 impl Corners {
     /// As many triangles from the front of the list as share eight points, and the numbers of these: at each step
     /// the triangle that brings the fewest new ones.
     fn pack(geometry: &Geometry, prims: &mut [PrimRef]) -> (Self, [u32; LANES], usize) {
         let mut packed = Self { of: [[0; LANES]; 3], lanes: [0; 8], prims: [NONE; LANES] };
-        let (mut points, mut known, mut used, mut count) = ([0; LANES], [Vec3::NAN; LANES], 0, 0);
-        while count < prims.len().min(LANES) {
-            let new = |prim: PrimRef| geometry.corners(prim).iter().filter(|p| !known[..used].contains(p)).count();
-            let best = (count..prims.len()).map(|i| (new(prims[i]), i)).min();
-            let Some((_, i)) = best.filter(|(new, _)| used + new <= LANES) else { break };
-            prims.swap(count, i);
-            let numbers = geometry.indexed().1[prims[count] as usize];
-            for (corner, (number, p)) in numbers.into_iter().zip(geometry.corners(prims[count])).enumerate() {
-                // Points at one place are one, whatever their numbers are.
-                let at = known[..used].iter().position(|v| *v == p).unwrap_or(used);
-                if at == used {
-                    (points[used], known[used]) = (number, p);
+        let (mut points, mut used, mut count) = ([0; LANES], 0, 0);
+        // Of each triangle: where its corners are, and which of the points each is.
+        let mut left: [([Vec3; 3], [u8; 3]); MOST_LEFT] = [([Vec3::NAN; 3], [UNKNOWN; 3]); MOST_LEFT];
+        let choice = prims.len().min(MOST_LEFT);
+        for (to, prim) in left.iter_mut().zip(prims.iter()) {
+            to.0 = geometry.corners(*prim);
+        }
+        while count < choice && count < LANES {
+            let new = |at: usize| left[at].1.iter().filter(|known| **known == UNKNOWN).count();
+            let best = (count..choice).map(|at| (new(at), at)).min();
+            let Some((_, at)) = best.filter(|(new, _)| used + new <= LANES) else { break };
+            prims.swap(count, at);
+            left.swap(count, at);
+            for corner in 0..3 {
+                if left[count].1[corner] == UNKNOWN {
+                    let p = left[count].0[corner];
+                    points[used] = geometry.indexed().1[prims[count] as usize][corner];
+                    // Points at one place are one, whatever their numbers are.
+                    for (corners, known) in &mut left[count..choice] {
+                        for (q, known) in corners.iter().zip(known) {
+                            if *q == p {
+                                *known = used as u8;
+                            }
+                        }
+                    }
                     used += 1;
                 }
-                packed.of[corner][count] = at as u8;
+                packed.of[corner][count] = left[count].1[corner];
             }
             packed.prims[count] = prims[count];
             count += 1;

@@ -89,7 +89,7 @@ impl Divide for Sbvh<'_> {
     }
 
     fn divide(&self, mut work: Work, may_be_leaf: bool, cx: &BuildCx) -> Result<Divided<Work>, BuildError> {
-        let object = self.binned.best(&work.refs, &work.centres, cx)?;
+        let object = self.binned.best(&work.refs, &work.bounds, &work.centres, cx)?;
         let overlap = object.map_or(f64::INFINITY, |o| {
             let both = o.sides[0].intersection(o.sides[1]);
             if both.is_empty() { 0.0 } else { both.half_area() }
