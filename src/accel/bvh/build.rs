@@ -94,22 +94,60 @@ pub struct Drafted {
     pub peak: Charge,
 }
 
+/// What `auto` may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Auto {
+    /// Every triangle stays whole: the tree finds the hits of brute force to the bit.
+    Whole,
+    /// Triangles are cut where that pays.
+    MayCut,
+}
+
 /// Builds a tree over all live triangles.
 ///
 /// # Errors
 /// Cancelled, or over the memory budget.
-pub fn draft(geometry: &Geometry, p: &ParamValues, cx: &BuildCx) -> Result<Drafted, BuildError> {
+pub fn draft(geometry: &Geometry, p: &ParamValues, auto: Auto, cx: &BuildCx) -> Result<Drafted, BuildError> {
     let n = geometry.live_count();
-    let mut plan = Plan::of(p, n);
-    if n + plan.allowance > num::MAX_INDEX / 2 {
-        let limit = num::MAX_INDEX as u64;
-        return Err(BuildError::TooMany { structure: ID, what: "nodes", limit, remedy: "Use a smaller model." });
+    let drafted = Plan::of(p, n).drafted(geometry, cx)?;
+    if auto == Auto::Whole || !Builder::is_auto(p) || n > CUT_UP_TO {
+        return Ok(drafted);
     }
-    let peak = cx.budget.charge(plan.peak_bytes(n)).map_err(too_large)?;
-    cx.progress.start("bound", n as u64);
-    let prims = prim_boxes(geometry, cx)?;
-    let draft = if n == 0 { Draft { nodes: Vec::new(), refs: Vec::new() } } else { plan.draft(geometry, prims, cx)? };
-    Ok(Drafted { draft, splits: plan.builder == Builder::Sbvh, remarks: plan.remarks, peak })
+    let overlap = drafted.draft.overlap();
+    if overlap < CUT_FROM {
+        return Ok(drafted);
+    }
+    drop(drafted);
+    let remark = format!("Builder: auto took sbvh, as siblings overlap by {:.0} %.", 100.0 * overlap);
+    Plan::cutting(p, n, remark).drafted(geometry, cx)
+}
+
+/// From this overlap of siblings on (see [`Draft::overlap`]) cutting triangles pays. Of eleven models those with 0.19
+/// and less gained at most 7 % of the SAH cost, and one lost 2 %; a car, a truck and a plant, with 0.23 to 0.32,
+/// gained 18 to 30 %; a soup, with 0.21, gained 3 %, and hair, with 0.28, 5 %.
+const CUT_FROM: f64 = 0.22;
+/// Up to so many triangles `auto` looks for that: cutting takes four to ten times as long as binning.
+const CUT_UP_TO: usize = 1_000_000;
+
+impl Plan {
+    /// With triangles cut, whatever the parameters say about the builder.
+    fn cutting(p: &ParamValues, triangles: usize, remark: String) -> Self {
+        let allowance = sbvh::allowance(triangles, p.float("duplication"));
+        Self { builder: Builder::Sbvh, allowance, remarks: vec![remark], ..Self::of(p, triangles) }
+    }
+
+    fn drafted(mut self, geometry: &Geometry, cx: &BuildCx) -> Result<Drafted, BuildError> {
+        let n = geometry.live_count();
+        if n + self.allowance > num::MAX_INDEX / 2 {
+            let limit = num::MAX_INDEX as u64;
+            return Err(BuildError::TooMany { structure: ID, what: "nodes", limit, remedy: "Use a smaller model." });
+        }
+        let peak = cx.budget.charge(self.peak_bytes(n)).map_err(too_large)?;
+        cx.progress.start("bound", n as u64);
+        let prims = prim_boxes(geometry, cx)?;
+        let draft = if n == 0 { Draft { nodes: Vec::new(), refs: Vec::new() } } else { self.draft(geometry, prims, cx)? };
+        Ok(Drafted { draft, splits: self.builder == Builder::Sbvh, remarks: self.remarks, peak })
+    }
 }
 
 /// Builds a BVH over all live triangles, and packs them.
@@ -117,7 +155,7 @@ pub fn draft(geometry: &Geometry, p: &ParamValues, cx: &BuildCx) -> Result<Draft
 /// # Errors
 /// Cancelled, or over the memory budget.
 pub fn build(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Built, BuildError> {
-    let Drafted { draft, splits, remarks, peak } = draft(geometry, p, cx)?;
+    let Drafted { draft, splits, remarks, peak } = draft(geometry, p, Auto::Whole, cx)?;
     cx.progress.start("pack", draft.refs.len() as u64);
     let packed = draft.pack(geometry, cx)?;
     drop(peak);

@@ -32,6 +32,19 @@ impl Draft {
         2 * triangles * (size_of::<Summary>() + size_of::<f64>())
     }
 
+    /// The chance that a random line that meets an inner node meets both of its children at once.
+    pub fn overlap(&self) -> f64 {
+        let (mut shared, mut inner) = (0.0, 0.0);
+        for node in &self.nodes {
+            let Some(left) = node.left() else { continue };
+            let [a, b] = [left, left + 1].map(|child| self.nodes[child as usize].bounds());
+            let both = a.intersection(b);
+            shared += if both.is_empty() { 0.0 } else { both.area() };
+            inner += node.bounds().area();
+        }
+        if inner > 0.0 { shared / inner } else { 0.0 }
+    }
+
     /// The packed triangles in the order of the leaves.
     pub fn pack(&self, geometry: &Geometry, cx: &BuildCx) -> Result<Vec<Packed>, BuildError> {
         in_chunks(self.refs.len(), cx, |i| Packed { corners: geometry.corners(self.refs[i]), prim: self.refs[i] })

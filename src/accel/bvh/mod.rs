@@ -25,7 +25,7 @@ mod sweep;
 mod topdown;
 mod tree;
 
-pub use build::Drafted;
+pub use build::{Auto, Drafted};
 pub use draft::Draft;
 pub use tree::{Built, MAX_DEPTH, Node, Packed};
 
@@ -137,8 +137,8 @@ pub fn tree(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<B
 }
 
 /// The same before it is packed, for structures that pack it in their own way.
-pub fn draft(geometry: &Geometry, p: &ParamValues, cx: &BuildCx) -> Result<Drafted, BuildError> {
-    build::draft(geometry, &completed(p), cx)
+pub fn draft(geometry: &Geometry, p: &ParamValues, auto: Auto, cx: &BuildCx) -> Result<Drafted, BuildError> {
+    build::draft(geometry, &completed(p), auto, cx)
 }
 
 fn completed(p: &ParamValues) -> ParamValues {

@@ -30,6 +30,11 @@ const SWEEP_UP_TO: usize = 50_000;
 const BIN_UP_TO: usize = 4_000_000;
 
 impl Builder {
+    /// Whether it is left to the preset.
+    pub fn is_auto(p: &ParamValues) -> bool {
+        p.choice("builder") == OPTIONS[0]
+    }
+
     /// What is asked for, and a remark if that was left to the preset.
     pub fn of(p: &ParamValues, triangles: usize) -> (Self, Option<String>) {
         let builder = match p.choice("builder") {

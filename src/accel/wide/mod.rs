@@ -75,7 +75,7 @@ pub const PARAMS: &[Param] = &[
 
 /// Builds it with the leaves that the parameters ask for.
 pub fn build<T: TriTest>(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Box<dyn Accel>, BuildError> {
-    let mut drafted = bvh::draft(geometry, p, cx)?;
+    let mut drafted = bvh::draft(geometry, p, bvh::Auto::MayCut, cx)?;
     if p.choice("layout") == "compressed" {
         return Ok(Box::new(build::build::<T, Indexed>(geometry, drafted, p, cx)?));
     }

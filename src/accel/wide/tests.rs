@@ -85,7 +85,7 @@ fn equals_brute<T: TriTest, B: leaf::Pack>(model: &str, set: &[(&str, &str)], ki
     assert!(expected.iter().flatten().count() > 100, "{model}: most rays miss");
     let any = trace(&*brute, &rays, Mode::Any);
     for road in Road::all() {
-        let drafted = bvh::draft(&geometry, &p, &cx).expect("small");
+        let drafted = bvh::draft(&geometry, &p, bvh::Auto::Whole, &cx).expect("small");
         let mut tree: Tree<T, B> = build::build(&geometry, drafted, &p, &cx).expect("small");
         tree.road = road;
         assert_eq!(trace(&tree, &rays, Mode::Closest), expected, "{model}, {}", road.id());
@@ -146,6 +146,19 @@ fn plain_leaves_give_the_hits_of_brute_force_on_every_road() {
 }
 
 #[test]
+fn auto_cuts_triangles_where_siblings_overlap_much() {
+    for (model, expected) in [("builtin:terrain?triangles=2000", false), ("builtin:hair?triangles=100000", true)] {
+        let remark = |set: &[(&str, &str)]| {
+            let built = build::<Watertight>(&geometry(model), &params(set), &BuildCx::unattended(1)).expect("small");
+            built.remarks().into_iter().find(|r| r.starts_with("Builder:"))
+        };
+        let cut = remark(&[]).expect("a remark").contains("took sbvh, as siblings overlap by ");
+        assert_eq!(cut, expected, "{model}");
+        assert_eq!(remark(&[("builder", "binned")]), None, "nothing is decided where a builder is named");
+    }
+}
+
+#[test]
 fn compressed_trees_give_the_hits_of_brute_force_on_every_road() {
     equals_brute::<Watertight, Indexed>("builtin:teapot", &[], TestKind::Watertight);
     equals_brute::<Fast, Indexed>("builtin:menger", &[("wide_leaf", "20")], TestKind::Fast);
@@ -178,7 +191,7 @@ fn triangles_at_one_place_go_into_nodes_below_each_other() {
     let geometry = geometry("builtin:soup?triangles=400");
     let p = params(&[("wide_leaf", "32"), ("c_block", "0"), ("leaves", "patches")]);
     let cx = BuildCx::unattended(1);
-    let drafted = bvh::draft(&geometry, &p, &cx).expect("small");
+    let drafted = bvh::draft(&geometry, &p, bvh::Auto::Whole, &cx).expect("small");
     let tree: Tree<Watertight, Patch> = build::build(&geometry, drafted, &p, &cx).expect("small");
     let mut prims = 0;
     walk(&tree, &mut |cell| {
