@@ -45,7 +45,7 @@ pub const PARAMS: &[Param] = &[
     Param {
         id: "builder",
         label: "Builder",
-        help: "How the tree is made: auto picks by the number of triangles and says what it took.",
+        help: "How the tree is made: auto picks by the number of triangles, and says what it took; for the wide BVH it also cuts triangles where siblings overlap much.",
         unit: "",
         kind: Kind::Choice { options: preset::OPTIONS },
     },

@@ -24,10 +24,9 @@ pub enum Builder {
 /// The names, `auto` first.
 pub const OPTIONS: &[&str] = &["auto", "binned", "sweep", "sbvh", "ploc", "lbvh", "midpoint", "median"];
 
-/// Up to so many triangles `auto` sweeps: that takes no longer than a blink.
+/// Up to so many triangles `auto` sweeps: that takes no longer than a blink. Beyond it bins: on ten million triangles
+/// in two thirds of the time that clustering takes, to a tree with a sixth fewer nodes a ray.
 const SWEEP_UP_TO: usize = 50_000;
-/// Up to so many it bins; beyond it clusters.
-const BIN_UP_TO: usize = 4_000_000;
 
 impl Builder {
     /// Whether it is left to the preset.
@@ -54,13 +53,7 @@ impl Builder {
     }
 
     const fn suiting(triangles: usize) -> (Self, &'static str) {
-        if triangles <= SWEEP_UP_TO {
-            (Self::Sweep, "sweep")
-        } else if triangles <= BIN_UP_TO {
-            (Self::Binned, "binned")
-        } else {
-            (Self::Ploc, "ploc")
-        }
+        if triangles <= SWEEP_UP_TO { (Self::Sweep, "sweep") } else { (Self::Binned, "binned") }
     }
 }
 
@@ -79,7 +72,7 @@ mod tests {
             assert!(remark.is_none());
         }
         let of = |n| Builder::of(&ParamValues::defaults(PARAMS), n);
-        assert_eq!((of(10).0, of(1_000_000).0, of(10_000_000).0), (Builder::Sweep, Builder::Binned, Builder::Ploc));
-        assert_eq!(of(12_345_678).1.as_deref(), Some("Builder: auto took ploc, for 12345678 triangles."));
+        assert_eq!((of(10).0, of(1_000_000).0, of(10_000_000).0), (Builder::Sweep, Builder::Binned, Builder::Binned));
+        assert_eq!(of(12_345_678).1.as_deref(), Some("Builder: auto took binned, for 12345678 triangles."));
     }
 }

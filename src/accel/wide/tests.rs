@@ -154,6 +154,7 @@ fn auto_cuts_triangles_where_siblings_overlap_much() {
         };
         let cut = remark(&[]).expect("a remark").contains("took sbvh, as siblings overlap by ");
         assert_eq!(cut, expected, "{model}");
+        assert!(!remark(&[("layout", "compressed")]).expect("a remark").contains("sbvh"), "cutting takes memory");
         assert_eq!(remark(&[("builder", "binned")]), None, "nothing is decided where a builder is named");
     }
 }
