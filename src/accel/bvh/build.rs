@@ -117,9 +117,15 @@ pub fn draft(geometry: &Geometry, p: &ParamValues, auto: Auto, cx: &BuildCx) -> 
     if overlap < CUT_FROM {
         return Ok(drafted);
     }
-    drop(drafted);
     let remark = format!("Builder: auto took sbvh, as siblings overlap by {:.0} %.", 100.0 * overlap);
-    Plan::cutting(p, n, remark).drafted(geometry, cx)
+    let cutting = Plan::cutting(p, n, remark);
+    // Where the memory does not suffice for it, the tree that there is will do.
+    let more = cutting.peak_bytes(n).saturating_sub(drafted.peak.bytes());
+    if cx.budget.charge(more).is_err() {
+        return Ok(drafted);
+    }
+    drop(drafted);
+    cutting.drafted(geometry, cx)
 }
 
 /// From this overlap of siblings on (see [`Draft::overlap`]) cutting triangles pays. Of eleven models those with 0.19

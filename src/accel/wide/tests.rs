@@ -160,6 +160,16 @@ fn auto_cuts_triangles_where_siblings_overlap_much() {
 }
 
 #[test]
+fn triangles_stay_whole_where_the_memory_does_not_suffice_to_cut_them() {
+    let (geometry, p) = (geometry("builtin:hair?triangles=100000"), params(&[]));
+    let whole = bvh::draft(&geometry, &p, bvh::Auto::Whole, &BuildCx::unattended(1)).expect("small");
+    let cx = BuildCx { budget: Budget::new(whole.peak.bytes()), ..BuildCx::unattended(1) };
+    let drafted = bvh::draft(&geometry, &p, bvh::Auto::MayCut, &cx).expect("as much as before");
+    assert!(!drafted.splits && drafted.draft.nodes.len() == whole.draft.nodes.len());
+    assert!(bvh::draft(&geometry, &p, bvh::Auto::MayCut, &BuildCx::unattended(1)).expect("small").splits);
+}
+
+#[test]
 fn compressed_trees_give_the_hits_of_brute_force_on_every_road() {
     equals_brute::<Watertight, Indexed>("builtin:teapot", &[], TestKind::Watertight);
     equals_brute::<Fast, Indexed>("builtin:menger", &[("wide_leaf", "20")], TestKind::Fast);
