@@ -30,6 +30,29 @@ pub struct Slabs {
     inv: Vec3A,
 }
 
+/// The part of one axis, taken out once by those that meet many planes of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Along {
+    o_lo: f32,
+    o_hi: f32,
+    inv: f32,
+}
+
+impl Along {
+    /// As [`Slabs::plane`].
+    #[inline(always)]
+    pub fn plane(&self, pos: f32) -> (f32, f32) {
+        let (a, b) = ((pos - self.o_lo) * self.inv, (pos - self.o_hi) * self.inv);
+        if a < b { (a, b) } else { (b, a) }
+    }
+
+    /// Whether the ray runs towards smaller values.
+    #[inline(always)]
+    pub fn backward(&self) -> bool {
+        self.inv < 0.0
+    }
+}
+
 /// The same for eight rays side by side.
 #[derive(Clone, Copy, Debug)]
 pub struct EightSlabs<F> {
@@ -98,9 +121,13 @@ impl Slabs {
     /// formula and with the same widening as the faces of a box.
     #[inline(always)]
     pub fn plane(&self, axis: usize, pos: f32) -> (f32, f32) {
-        let a = (pos - self.o_lo[axis]) * self.inv[axis];
-        let b = (pos - self.o_hi[axis]) * self.inv[axis];
-        (min(a, b), max(a, b))
+        self.along(axis).plane(pos)
+    }
+
+    /// What is needed of one axis.
+    #[inline(always)]
+    pub fn along(&self, axis: usize) -> Along {
+        Along { o_lo: self.o_lo[axis], o_hi: self.o_hi[axis], inv: self.inv[axis] }
     }
 
     /// Whether the ray runs towards smaller values on the axis.

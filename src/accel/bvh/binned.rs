@@ -10,7 +10,6 @@ use super::few;
 use super::slice::{Heuristic, Slice};
 use super::topdown::Divided;
 use crate::accel::{BuildCx, BuildError};
-use crate::simd::{Kernel, Road, Simd};
 use glam::{IVec4, Mat4, Vec4};
 
 /// The most buckets on an axis.
@@ -31,7 +30,7 @@ pub struct BinRule {
     axis: usize,
     origin: f32,
     per_unit: f32,
-    /// The number, as [`Scale::places`] has it.
+    /// The number, as it is before [`bucket`] takes it.
     first_right: f32,
 }
 
@@ -219,56 +218,17 @@ impl Binned {
         cx: &BuildCx,
     ) -> Result<Option<BinSplit>, BuildError> {
         let scale = Scale::new(centres, bins);
-        let whole = if prims.len() < PARALLEL { None } else { Some(count_in_parallel::<N>(prims, &scale, cx)?) };
-        let best = Road::best().run(Best { prims, bounds, scale: &scale, bins, counted: whole });
-        Ok(best.map(|(axis, first_right, [(left, on_left), (right, on_right)])| {
-            let children = left.half_area() * f64::from(on_left) + right.half_area() * f64::from(on_right);
-            BinSplit { rule: scale.rule(axis, first_right), children, sides: [left, right] }
-        }))
-    }
-}
-
-/// Looks for the best plane with the instructions of the road: no vector is longer than four, but none has to be
-/// copied before it is changed.
-struct Best<'a, const N: usize> {
-    prims: &'a [PrimBox],
-    bounds: &'a Bounds,
-    scale: &'a Scale,
-    bins: usize,
-    /// If that is done already.
-    counted: Option<Bins<N>>,
-}
-
-impl<const N: usize> Kernel for Best<'_, N> {
-    /// The axis, the first bucket on the right, and the box and the number of triangles of both sides.
-    type Out = Option<(usize, usize, [(Bounds, i32); 2])>;
-
-    #[inline(always)]
-    fn run<S: Simd>(self, _: S) -> Self::Out {
-        let mut counted = Bins::EMPTY;
-        match &self.counted {
-            Some(all) => counted = *all,
-            None => counted.count(self.prims, self.scale),
-        }
-        let (axis, first_right) = counted.cheapest(self.bins, self.bounds)?;
-        let sides = [counted.side(axis, 0, first_right), counted.side(axis, first_right, self.bins)];
-        Some((axis, first_right, sides))
-    }
-}
-
-/// The same of the counting alone.
-struct Count<'a, const N: usize> {
-    prims: &'a [PrimBox],
-    scale: &'a Scale,
-    into: &'a mut Bins<N>,
-}
-
-impl<const N: usize> Kernel for Count<'_, N> {
-    type Out = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, _: S) {
-        self.into.count(self.prims, self.scale);
+        let counted = if prims.len() < PARALLEL {
+            let mut counted = Bins::<N>::EMPTY;
+            counted.count(prims, &scale);
+            counted
+        } else {
+            count_in_parallel(prims, &scale, cx)?
+        };
+        let Some((axis, first_right)) = counted.cheapest(bins, bounds) else { return Ok(None) };
+        let [(left, on_left), (right, on_right)] = [counted.side(axis, 0, first_right), counted.side(axis, first_right, bins)];
+        let children = left.half_area() * f64::from(on_left) + right.half_area() * f64::from(on_right);
+        Ok(Some(BinSplit { rule: scale.rule(axis, first_right), children, sides: [left, right] }))
     }
 }
 
@@ -290,7 +250,7 @@ impl Heuristic for Binned {
 fn count_in_parallel<const N: usize>(prims: &[PrimBox], scale: &Scale, cx: &BuildCx) -> Result<Bins<N>, BuildError> {
     let chunk = |mut bins: Bins<N>, prims: &[PrimBox]| {
         cx.cancel.check()?;
-        Road::best().run(Count { prims, scale, into: &mut bins });
+        bins.count(prims, scale);
         Ok(bins)
     };
     let join = |mut a: Bins<N>, b: Bins<N>| {

@@ -17,7 +17,7 @@ use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shap
 use crate::accel::probe::{Probe, Prune};
 use crate::accel::{PrimHit, Query, Structure};
 use crate::geometry::tri::TriTest;
-use crate::geometry::{Aabb, Axis, Ray, Slabs};
+use crate::geometry::{Aabb, Axis, Ray};
 use crate::scene::{Geometry, PrimRef};
 use crate::task::Charge;
 
@@ -125,29 +125,6 @@ impl<T: TriTest, const MAILBOX: bool> KdTree<T, MAILBOX> {
     }
 }
 
-/// What [`Slabs`] hold of one axis: all that a step asks for.
-#[derive(Clone, Copy)]
-struct Along {
-    o_lo: f32,
-    o_hi: f32,
-    inv: f32,
-}
-
-impl Along {
-    #[inline(always)]
-    fn of(slabs: &Slabs, axis: usize) -> Self {
-        let [o_lo, o_hi, inv] = slabs.parts().map(|part| part[axis]);
-        Self { o_lo, o_hi, inv }
-    }
-
-    /// As [`Slabs::plane`].
-    #[inline(always)]
-    fn plane(&self, pos: f32) -> (f32, f32) {
-        let (a, b) = ((pos - self.o_lo) * self.inv, (pos - self.o_hi) * self.inv);
-        if a < b { (a, b) } else { (b, a) }
-    }
-}
-
 /// A child put aside, and the part of the ray that may be in it.
 #[derive(Clone, Copy)]
 struct Aside {
@@ -170,7 +147,7 @@ impl<T: TriTest, const MAILBOX: bool> Structure for KdTree<T, MAILBOX> {
         let bounds = self.built.geometry.bounds();
         let test = T::prepare(ray, bounds);
         let slabs = test.slabs();
-        let along = [Along::of(slabs, 0), Along::of(slabs, 1), Along::of(slabs, 2)];
+        let along = [slabs.along(0), slabs.along(1), slabs.along(2)];
         let mut best = Best::new(ray.tmin, ray.tmax);
         let (entry, exit) = slabs.interval(bounds);
         let (mut entry, mut exit) = (entry.max(ray.tmin), exit.min(ray.tmax));
@@ -189,7 +166,7 @@ impl<T: TriTest, const MAILBOX: bool> Structure for KdTree<T, MAILBOX> {
                 let along = &along[node.axis()];
                 let (early, late) = along.plane(node.pos());
                 let (below, above) = (current + 1, node.above());
-                let (near, far) = if along.inv < 0.0 { (above, below) } else { (below, above) };
+                let (near, far) = if along.backward() { (above, below) } else { (below, above) };
                 if late < entry {
                     probe.pruned(near, Prune::Missed);
                     current = far;
