@@ -121,7 +121,7 @@ fn an_octree_gets_over_a_bad_division() {
 fn an_octree_keeps_to_its_references() {
     let triangles = soup(3_000, 0.1, 17);
     let geometry = geometry_of(&scene_of(&triangles));
-    let references = |most| stats(built("octree", &[("max_refs", most)], &geometry).as_ref()).references;
+    let references = |most| stats(built("octree", &[("max_leaf", "2"), ("max_refs", most)], &geometry).as_ref()).references;
     assert_eq!(references("1"), 3_000, "no triangle is in two leaves");
     for (most, limit) in [("2", 6_000), ("4", 12_000), ("8", 24_000)] {
         let taken = references(most);

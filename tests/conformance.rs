@@ -36,6 +36,9 @@ fn compare(entry: &Entry, accel: &dyn Accel, brute: &[Option<Hit>], rays: &[Ray]
         assert!(tie && !hierarchy, "{} on {what}: {ray:?} gives {hit:?}, brute {expected:?}", entry.id);
         near_ties += 1;
     }
+    let mut plain = vec![None; rays.len()];
+    accel.trace_like_for_like(rays, Mode::Closest, &mut plain, &Cancel::new()).expect("not cancelled");
+    assert_eq!(plain, hits, "{} on {what}: every road gives the same hits", entry.id);
     let any = trace(accel, rays, Mode::Any);
     for ((ray, hit), expected) in rays.iter().zip(&any).zip(brute) {
         let noise = hit.or(*expected).is_some_and(|h| grazes(ray, &h, accel.geometry()));

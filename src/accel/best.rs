@@ -46,10 +46,10 @@ impl Best {
         (self.hit.prim != NONE).then_some(self.hit)
     }
 
-    /// Whether it is this triangle that was found.
+    /// The triangle found; [`NONE`] so far.
     #[inline(always)]
-    pub const fn is_of(&self, prim: PrimRef) -> bool {
-        self.hit.prim == prim
+    pub const fn prim(&self) -> PrimRef {
+        self.hit.prim
     }
 
     /// Tests a triangle and keeps the hit if it is closer, or as close with a lower index. True if

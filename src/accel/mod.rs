@@ -15,6 +15,7 @@ pub mod epo;
 mod grid;
 mod hit;
 mod kdtree;
+mod loose;
 mod octree;
 pub mod params;
 pub mod probe;
@@ -67,11 +68,12 @@ pub trait Structure: Cells + Sized + 'static {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        one_by_one(self.geometry(), rays, hits, cancel, |ray| self.trace_one(ray, query, &mut Off))
+        let mut off = Off::best();
+        one_by_one(self.geometry(), rays, hits, cancel, |ray| self.trace_one(ray, query, &mut off))
     }
 
     /// The same one ray at a time, without instructions that not every processor has: the terms on which
-    /// structures are compared like for like. The default is for structures that know no other way.
+    /// structures are compared like for like.
     fn trace_plain<Q: Query>(
         &self,
         rays: &[Ray],
@@ -79,7 +81,7 @@ pub trait Structure: Cells + Sized + 'static {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        self.trace_batch(rays, query, hits, cancel)
+        one_by_one(self.geometry(), rays, hits, cancel, |ray| self.trace_one(ray, query, &mut Off::plain()))
     }
 }
 
@@ -196,7 +198,7 @@ fn one_by_one(
     rays: &[Ray],
     hits: &mut [Option<Hit>],
     cancel: &Cancel,
-    trace: impl Fn(&Ray) -> Option<PrimHit>,
+    mut trace: impl FnMut(&Ray) -> Option<PrimHit>,
 ) -> Result<Traced, Cancelled> {
     let mut traced = Traced::default();
     for (rays, hits) in rays.chunks(RAYS_PER_CHECK).zip(hits.chunks_mut(RAYS_PER_CHECK)) {

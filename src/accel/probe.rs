@@ -2,6 +2,7 @@
 //! compiled with [`Off`], which leaves nothing behind.
 
 use crate::scene::PrimRef;
+use crate::simd::Road;
 
 /// Hears what a traversal does.
 pub trait Probe {
@@ -9,6 +10,13 @@ pub trait Probe {
     const LISTENS: bool = false;
     /// Whether anything is heard or counted at all.
     const WATCHES: bool = true;
+
+    /// On which road loose triangles are looked at several at a time; `None` where each is tested by itself, as
+    /// those who count or listen want it.
+    #[inline(always)]
+    fn road(&self) -> Option<Road> {
+        None
+    }
 
     /// The node or cell entered next, by its number in [`super::CellId`].
     #[inline(always)]
@@ -133,10 +141,30 @@ impl Probe for Watched<'_> {
 
 /// Nobody watches.
 #[derive(Clone, Copy, Debug)]
-pub struct Off;
+pub struct Off {
+    road: Option<Road>,
+}
+
+impl Off {
+    /// With the best that this processor has; asked for once a batch.
+    #[inline]
+    pub fn best() -> Self {
+        Self { road: Some(Road::best()).filter(|road| road.is_wide()) }
+    }
+
+    /// Without instructions that not every processor has.
+    pub const fn plain() -> Self {
+        Self { road: None }
+    }
+}
 
 impl Probe for Off {
     const WATCHES: bool = false;
+
+    #[inline(always)]
+    fn road(&self) -> Option<Road> {
+        self.road
+    }
 }
 
 /// How much a traversal did.

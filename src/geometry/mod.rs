@@ -25,5 +25,5 @@ pub use degenerate::has_zero_area;
 pub use line::Line;
 pub use overlap::triangle_overlaps_box;
 pub use ray::Ray;
-pub use slabs::{EightSlabs, Slabs};
+pub use slabs::{Along, EightSlabs, Slabs};
 pub use space::Space;

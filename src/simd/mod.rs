@@ -154,6 +154,11 @@ impl Road {
         }
     }
 
+    /// Whether vectors of eight lanes are more than a way to write loops.
+    pub const fn is_wide(self) -> bool {
+        !matches!(self, Self::Portable(_))
+    }
+
     /// Runs a kernel that is for eight lanes side by side, many of them at a time; gives it back on the plain
     /// road, where such kernels take minutes to compile.
     #[inline]

@@ -11,7 +11,7 @@ use super::probe::{Off, Probe};
 use super::{BuildCx, BuildError, Hit, PrimHit, Query, Structure, Traced, in_scaled_space};
 use crate::geometry::Ray;
 use crate::geometry::num;
-use crate::geometry::tri::{Block, Eight, TriTest};
+use crate::geometry::tri::{self, Block, Eight, TriTest};
 use crate::scene::{Geometry, PrimRef};
 use crate::simd::{LANES, Portable};
 use crate::task::{Cancel, Cancelled, Charge};
@@ -94,7 +94,7 @@ impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
         best: &mut Best,
     ) -> bool {
         let lanes = LANES.min(self.geometry.live_count() - first);
-        let mut left = test.may_meet(Portable, block) & ((1 << lanes) - 1);
+        let mut left = test.may_meet(Portable, &tri::corners(Portable, block, test.axes())) & ((1 << lanes) - 1);
         // The others were tested, too, and missed.
         (left.count_ones()..num::index(lanes)).for_each(|_| probe.prim());
         while left != 0 {
@@ -137,10 +137,20 @@ impl<T: TriTest, const BOUND: bool> Structure for Brute<T, BOUND> {
     ) -> Result<Traced, Cancelled> {
         let mut traced = Traced::default();
         for (ray, hit) in rays.iter().zip(hits) {
-            let local = |ray: &Ray| self.trace_with_checks(ray, query, &mut Off, || cancel.check());
+            let local = |ray: &Ray| self.trace_with_checks(ray, query, &mut Off::plain(), || cancel.check());
             *hit = in_scaled_space(&self.geometry, ray, &mut traced, local)?;
         }
         Ok(traced)
+    }
+
+    fn trace_plain<Q: Query>(
+        &self,
+        rays: &[Ray],
+        query: &Q,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        self.trace_batch(rays, query, hits, cancel)
     }
 }
 

@@ -177,6 +177,7 @@ impl<T: TriTest> Structure for Bsp<T> {
         let bounds = self.built.geometry.bounds();
         let test = T::prepare(ray, bounds);
         let (slabs, crossings) = (test.slabs(), Crossings::new(ray, bounds));
+        let along = [slabs.along(0), slabs.along(1), slabs.along(2)];
         let mut best = Best::new(ray.tmin, ray.tmax);
         let (entry, exit) = slabs.interval(bounds);
         let (mut entry, mut exit) = (entry.max(ray.tmin), exit.min(ray.tmax));
@@ -195,9 +196,9 @@ impl<T: TriTest> Structure for Bsp<T> {
                     let c = crossings.of(&self.built.planes[node.data as usize]);
                     (c.early, c.late, c.from_above)
                 } else {
-                    let axis = node.kind() as usize;
-                    let (early, late) = slabs.plane(axis, node.pos());
-                    (early, late, slabs.backward(axis))
+                    let along = &along[node.kind() as usize];
+                    let (early, late) = along.plane(node.pos());
+                    (early, late, along.backward())
                 };
                 let (below, above) = (current + 1, node.above());
                 let (near, far) = if from_above { (above, below) } else { (below, above) };
@@ -214,10 +215,8 @@ impl<T: TriTest> Structure for Bsp<T> {
                 continue;
             }
             probe.leaf();
-            for prim in &self.built.refs[node.refs()] {
-                if best.test(&test, &self.built.geometry.corners(*prim), *prim, query, probe) {
-                    return best.found();
-                }
+            if best.test_all(&test, &self.built.geometry, &self.built.refs[node.refs()], (query, probe)) {
+                return best.found();
             }
             // The next cell in front of the best hit. Cells come front to back but for those on both
             // sides of a plane that the ray runs along, so one behind the hit does not end it all.

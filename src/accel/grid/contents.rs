@@ -128,7 +128,7 @@ impl Contents {
             return false;
         }
         probe.leaf();
-        refs.iter().any(|prim| best.test(ray, &geometry.corners(*prim), *prim, query, probe))
+        best.test_all(ray, geometry, refs, (query, probe))
     }
 
     /// Bytes by part.

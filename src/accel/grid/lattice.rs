@@ -7,10 +7,10 @@ use glam::DVec3;
 /// Equal cells over a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
-    /// The least corner.
-    pub min: DVec3,
+    /// The least corner; an array, since axes are picked by number.
+    pub min: [f64; 3],
     /// The edges of one cell.
-    pub cell: DVec3,
+    pub cell: [f64; 3],
     /// Cells along each axis, at least 1.
     pub resolution: [usize; 3],
     /// How far a triangle test may find a triangle beside the ray: triangles are sorted into every
@@ -39,23 +39,22 @@ impl Lattice {
         let room = DVec3::splat(2.0 * slack);
         let (min, size) = (bounds.min.as_dvec3() - room, size + 2.0 * room);
         let per_axis = DVec3::new(resolution[0] as f64, resolution[1] as f64, resolution[2] as f64);
-        Self { min, cell: size / per_axis, resolution, slack }
+        Self { min: min.into(), cell: (size / per_axis).into(), resolution, slack }
     }
 
     /// Cells along each axis for a lattice inside one of this one's cells, with about `density` cells
     /// for each of `refs` references.
     pub fn resolution_within(&self, refs: u32, density: f64) -> [u8; 3] {
-        let resolution = resolution(self.cell, (density * f64::from(refs)).max(1.0), self.slack, MAX_WITHIN);
+        let resolution = resolution(DVec3::from(self.cell), (density * f64::from(refs)).max(1.0), self.slack, MAX_WITHIN);
         resolution.map(|n| u8::try_from(n).unwrap_or(u8::MAX))
     }
 
     /// The lattice inside a cell, of at least one cell along each axis.
     #[inline(always)]
     pub fn within(&self, at: [usize; 3], resolution: [u8; 3]) -> Self {
-        let min = DVec3::new(self.plane(0, at[0]), self.plane(1, at[1]), self.plane(2, at[2]));
-        let [x, y, z] = resolution;
-        let per_axis = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
-        Self { min, cell: self.cell / per_axis, resolution: resolution.map(usize::from), slack: self.slack }
+        let min = [0, 1, 2].map(|k| self.plane(k, at[k]));
+        let cell = [0, 1, 2].map(|k| self.cell[k] / f64::from(resolution[k]));
+        Self { min, cell, resolution: resolution.map(usize::from), slack: self.slack }
     }
 
     /// The number of cells.

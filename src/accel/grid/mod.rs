@@ -26,7 +26,7 @@ pub const PARAMS: &[Param] = &[Param {
     label: "Density λ",
     help: "Cells for each triangle: more cells mean fewer tests in each, and more steps and memory.",
     unit: "cells/triangle",
-    kind: Kind::Float { min: 0.01, max: 64.0, default: 4.0 },
+    kind: Kind::Float { min: 0.01, max: 64.0, default: 2.0 },
 }];
 
 /// What can be set of a two-level grid.
@@ -43,7 +43,7 @@ pub const TWO_LEVEL_PARAMS: &[Param] = &[
         label: "Leaf density λ",
         help: "Cells that a coarse cell is cut into, for each triangle in it.",
         unit: "cells/triangle",
-        kind: Kind::Float { min: 0.01, max: 64.0, default: 4.0 },
+        kind: Kind::Float { min: 0.01, max: 64.0, default: 2.0 },
     },
 ];
 

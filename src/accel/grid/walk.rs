@@ -3,14 +3,13 @@
 
 use super::lattice::Lattice;
 use crate::geometry::Ray;
-use glam::DVec3;
 
-/// A ray in 64 bits.
+/// A ray in 64 bits. The axes come as arrays, since they are picked by number.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
-    origin: DVec3,
-    dir: DVec3,
-    inv: DVec3,
+    origin: [f64; 3],
+    dir: [f64; 3],
+    inv: [f64; 3],
     /// The ray's interval and the error that t of a hit carries from the triangle test.
     from: f64,
     to: f64,
@@ -22,7 +21,7 @@ impl Line {
     pub fn new(ray: &Ray, slack: f64) -> Self {
         let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
         let (from, to) = (f64::from(ray.tmin) - 4.0 * slack, f64::from(ray.tmax) + 4.0 * slack);
-        Self { origin, dir, inv: 1.0 / dir, from, to }
+        Self { origin: origin.into(), dir: dir.into(), inv: (1.0 / dir).into(), from, to }
     }
 }
 
@@ -45,7 +44,7 @@ pub struct Walk<'a> {
     /// The cell it is in.
     pub at: [usize; 3],
     /// The t at which each axis is next crossed; infinite for an axis it is parallel to.
-    next: DVec3,
+    next: [f64; 3],
 }
 
 impl<'a> Walk<'a> {
@@ -71,9 +70,8 @@ impl<'a> Walk<'a> {
         if entry > exit {
             return None;
         }
-        let start = line.origin + line.dir * entry;
-        let at = [0, 1, 2].map(|k| lattice.layer(k, start[k]));
-        let mut walk = Self { lattice, line, at, next: DVec3::INFINITY };
+        let at = [0, 1, 2].map(|k| lattice.layer(k, line.origin[k] + line.dir[k] * entry));
+        let mut walk = Self { lattice, line, at, next: [f64::INFINITY; 3] };
         (0..3).filter(|k| line.dir[*k] != 0.0).for_each(|k| walk.next[k] = walk.crossing(k));
         Some(walk)
     }
@@ -88,9 +86,10 @@ impl<'a> Walk<'a> {
     /// The axis that is crossed next.
     #[inline(always)]
     fn axis(&self) -> usize {
-        if self.next.x <= self.next.y && self.next.x <= self.next.z {
+        let [x, y, z] = self.next;
+        if x <= y && x <= z {
             0
-        } else if self.next.y <= self.next.z {
+        } else if y <= z {
             1
         } else {
             2

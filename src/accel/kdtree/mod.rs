@@ -58,7 +58,7 @@ pub const PARAMS: &[Param] = &[
         kind: Kind::Int { min: 0, max: tree::MAX_DEPTH, default: 0 },
     },
     C_TRAV,
-    Param { kind: Kind::Float { min: 0.01, max: 100.0, default: 1.5 }, ..C_ISECT },
+    Param { kind: Kind::Float { min: 0.01, max: 100.0, default: 0.5 }, ..C_ISECT },
     Param {
         id: "empty_bonus",
         label: "Empty bonus",

@@ -19,6 +19,7 @@ use crate::accel::{PrimHit, Query, Structure};
 use crate::geometry::tri::TriTest;
 use crate::geometry::{Aabb, Axis, Ray};
 use crate::scene::{Geometry, PrimRef};
+use crate::simd::LANES;
 use crate::task::Charge;
 
 /// The deepest leaf there can be, so that the traversal's stack has a fixed size.
@@ -144,7 +145,8 @@ impl<T: TriTest, const MAILBOX: bool> Structure for KdTree<T, MAILBOX> {
     /// a cell is skipped when the best hit lies before its earliest entry.
     #[inline]
     fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
-        let bounds = self.built.geometry.bounds();
+        let geometry = &*self.built.geometry;
+        let bounds = geometry.bounds();
         let test = T::prepare(ray, bounds);
         let slabs = test.slabs();
         let along = [slabs.along(0), slabs.along(1), slabs.along(2)];
@@ -183,15 +185,19 @@ impl<T: TriTest, const MAILBOX: bool> Structure for KdTree<T, MAILBOX> {
                 continue;
             }
             probe.leaf();
-            for prim in &self.built.refs[node.refs()] {
-                if MAILBOX && mailbox.holds_or_takes(*prim) {
-                    continue;
+            for refs in self.built.refs[node.refs()].chunks(LANES) {
+                let (mut fresh, mut count) = ([0; LANES], 0);
+                for prim in refs {
+                    if !(MAILBOX && mailbox.holds_or_takes(*prim)) {
+                        fresh[count] = *prim;
+                        count += 1;
+                    }
                 }
-                let known = best.is_of(*prim);
-                if best.test(&test, &self.built.geometry.corners(*prim), *prim, query, probe) {
+                let known = best.prim();
+                if best.test_all(&test, geometry, &fresh[..count], (query, probe)) {
                     return best.found();
                 }
-                if !known && best.is_of(*prim) && !(entry <= best.t() && best.t() <= exit) {
+                if best.prim() != known && !(entry <= best.t() && best.t() <= exit) {
                     probe.outside();
                 }
             }

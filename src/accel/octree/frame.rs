@@ -13,7 +13,7 @@
 //! ```
 
 use super::node::{Node, UPPER, middle, part};
-use crate::geometry::{Aabb, Slabs};
+use crate::geometry::{Aabb, Along};
 use glam::Vec3;
 
 /// A node to be visited, its cell, and the part of the ray that may be in it.
@@ -60,7 +60,7 @@ impl Frame {
 
     /// For an inner node.
     #[inline(always)]
-    pub fn new(node: Node, visit: &Visit, slabs: &Slabs) -> Self {
+    pub fn new(node: Node, visit: &Visit, along: &[Along; 3]) -> Self {
         let Visit { cell, entry, exit, .. } = *visit;
         let (octants, middle) = (node.octants(), middle(&cell));
         let (mut early, mut late) = (Vec3::INFINITY, Vec3::INFINITY);
@@ -69,8 +69,8 @@ impl Frame {
             if octants.axes >> k & 1 == 0 {
                 continue;
             }
-            (early[k], late[k]) = slabs.plane(k, middle[k]);
-            flip |= u8::from(slabs.backward(k)) << k;
+            (early[k], late[k]) = along[k].plane(middle[k]);
+            flip |= u8::from(along[k].backward()) << k;
             if late[k] < entry {
                 passed |= !UPPER[k];
             }
@@ -117,7 +117,7 @@ fn flipped(octants: u8, flip: u8) -> u8 {
 mod tests {
     use super::*;
     use crate::accel::octree::node::Octants;
-    use crate::geometry::Ray;
+    use crate::geometry::{Ray, Slabs};
 
     #[test]
     fn sets_are_flipped_bit_by_bit() {
@@ -134,7 +134,11 @@ mod tests {
         let slabs = Slabs::new(&Ray::new(origin, dir), &cell);
         let (entry, exit) = slabs.interval(&cell);
         let node = Node::inner(Octants { filled: 0xFF, axes: 7 }, 0);
-        let mut frame = Frame::new(node, &Visit { node: 0, cell, entry: entry.max(0.0), exit }, &slabs);
+        let mut frame = Frame::new(
+            node,
+            &Visit { node: 0, cell, entry: entry.max(0.0), exit },
+            &[slabs.along(0), slabs.along(1), slabs.along(2)],
+        );
         std::iter::from_fn(|| frame.next(f32::INFINITY).map(|visit| visit.node)).collect()
     }
 

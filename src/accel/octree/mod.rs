@@ -25,7 +25,7 @@ pub const PARAMS: &[Param] = &[
         label: "Leaf size",
         help: "Cells with no more triangles than this are not divided.",
         unit: "triangles",
-        kind: Kind::Int { min: 1, max: 64, default: 2 },
+        kind: Kind::Int { min: 1, max: 64, default: 8 },
     },
     Param {
         id: "max_depth",

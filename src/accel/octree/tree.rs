@@ -79,6 +79,7 @@ impl<T: TriTest> Structure for Octree<T> {
             return None;
         }
         let mut visit = Visit { node: 0, cell: *geometry.bounds(), entry, exit };
+        let along = [test.slabs().along(0), test.slabs().along(1), test.slabs().along(2)];
         let mut frames = [Frame::NONE; MAX_DEPTH as usize];
         let mut top = 0;
         loop {
@@ -87,13 +88,11 @@ impl<T: TriTest> Structure for Octree<T> {
             let node = self.built.nodes[visit.node as usize];
             if node.is_leaf() {
                 probe.leaf();
-                for prim in &self.built.refs[node.refs()] {
-                    if best.test(&test, &geometry.corners(*prim), *prim, query, probe) {
-                        return best.found();
-                    }
+                if best.test_all(&test, geometry, &self.built.refs[node.refs()], (query, probe)) {
+                    return best.found();
                 }
             } else {
-                frames[top] = Frame::new(node, &visit, test.slabs());
+                frames[top] = Frame::new(node, &visit, &along);
                 top += 1;
             }
             visit = loop {

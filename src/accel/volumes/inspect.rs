@@ -127,7 +127,7 @@ impl<T: TriTest, V: Volume> Volumes for Tree<T, V> {
 
     fn all_hits(&self, ray: &Ray) -> Vec<PrimRef> {
         let hits = Mutex::new(Vec::new());
-        let walk = |ray: &Ray| Ok(self.trace_one(ray, &Every(&hits), &mut crate::accel::probe::Off));
+        let walk = |ray: &Ray| Ok(self.trace_one(ray, &Every(&hits), &mut crate::accel::probe::Off::plain()));
         let _ = in_scaled_space(&self.geometry, ray, &mut Traced::default(), walk);
         hits.into_inner().unwrap_or_default()
     }

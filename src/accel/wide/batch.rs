@@ -267,12 +267,12 @@ fn settle<S: Simd, T: TriTest, B: Pack, Q: Query>(
         let (_, ray) = lists.get(SETTLE, i);
         let way = &mut ways[ray];
         let (test, before) = (way.test::<T>(), way.best.t());
-        if way.found.settle(&test, (B::at(&tree.units, way.block), tree.points()), query, &mut way.best, &mut Off) {
+        if way.found.settle(&test, (B::at(&tree.units, way.block), tree.points()), query, &mut way.best, &mut Off::plain()) {
             lists.add(Child::NOTHING, Child::NONE, ray);
             continue;
         }
         if way.best.t() < before {
-            way.last = way.open.forget_behind(s, way.last, way.best.t(), &mut Off);
+            way.last = way.open.forget_behind(s, way.last, way.best.t(), &mut Off::plain());
         }
         let next = way.open.next(way.last);
         tree.prefetch(s, next);

@@ -222,7 +222,7 @@ impl Beam {
         }
         if any {
             self.end = greatest_of(&self.ends);
-            self.last = self.open.forget_behind(s, self.last, self.end, &mut Off);
+            self.last = self.open.forget_behind(s, self.last, self.end, &mut Off::plain());
         }
         true
     }
@@ -277,7 +277,7 @@ impl Beam {
             let found = PrimHit { t: self.ends[lane], u: self.u[lane], v: self.v[lane], prim: self.prims[lane] };
             let mut best = Best::with(self.tmins[lane], found);
             let over = if doubt >> lane & 1 == 1 {
-                best.test(&self.ray::<T>(lane), tri, prim, query, &mut Off)
+                best.test(&self.ray::<T>(lane), tri, prim, query, &mut Off::plain())
             } else {
                 best.offer(PrimHit { t: t[lane], u: u[lane], v: v[lane], prim }, query)
             };

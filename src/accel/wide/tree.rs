@@ -142,7 +142,7 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         if let ([ray], [hit]) = (rays, &mut *hits) {
             cancel.check()?;
             let mut traced = Traced::default();
-            *hit = in_scaled_space(&self.geometry, ray, &mut traced, |ray| Ok(self.one(ray, query, &mut Off)))?;
+            *hit = in_scaled_space(&self.geometry, ray, &mut traced, |ray| Ok(self.one(ray, query, &mut Off::plain())))?;
             return Ok(traced);
         }
         if self.root == Child::NONE {
@@ -150,7 +150,9 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         }
         with_under_way(|under_way| match self.road.run_wide(Batch { tree: self, rays, query, hits, cancel, under_way }) {
             Ok(traced) => traced,
-            Err(Batch { hits, .. }) => one_by_one(&self.geometry, rays, hits, cancel, |ray| self.plainly(ray, query, &mut Off)),
+            Err(Batch { hits, .. }) => {
+                one_by_one(&self.geometry, rays, hits, cancel, |ray| self.plainly(ray, query, &mut Off::plain()))
+            }
         })
     }
 
@@ -161,7 +163,7 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        one_by_one(&self.geometry, rays, hits, cancel, |ray| self.plainly(ray, query, &mut Off))
+        one_by_one(&self.geometry, rays, hits, cancel, |ray| self.plainly(ray, query, &mut Off::plain()))
     }
 }
 

@@ -82,7 +82,7 @@ mod tests {
 
         #[inline(always)]
         fn run<S: Simd>(self, s: S) -> u32 {
-            self.0.may_meet(s, self.1)
+            self.0.may_meet(s, &corners(s, self.1, self.0.axes()))
         }
     }
 
@@ -119,7 +119,7 @@ mod tests {
         let ray = Ray::new(Vec3::new(-0.5, -0.5, -1.0), Vec3::Z);
         let bounds = Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE };
         let block = Block::new([far; LANES]);
-        assert_eq!(Watertight::prepare(&ray, &bounds).may_meet(Portable, &block), 0);
-        assert_eq!(Fast::prepare(&ray, &bounds).may_meet(Portable, &block), 0);
+        assert_eq!(Portable.run(Look(&Watertight::prepare(&ray, &bounds), &block)), 0);
+        assert_eq!(Portable.run(Look(&Fast::prepare(&ray, &bounds), &block)), 0);
     }
 }

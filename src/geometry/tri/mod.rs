@@ -81,10 +81,10 @@ pub trait TriTest: Copy + Send + Sync + 'static {
     fn from_own(own: &Own<f32>, slabs: Slabs) -> Self;
 
     /// Which of eight triangles [`Self::meet`] may accept, a bit for each lane: all that it does
-    /// accept are among them.
+    /// accept are among them. The corners come with the axes in the order of [`Self::axes`].
     #[inline(always)]
-    fn may_meet<S: Simd>(&self, s: S, triangles: &impl Eight) -> u32 {
-        let meets = Self::meet_eight(s, &splat_own(s, &self.own()), &block::corners(s, triangles, self.axes()));
+    fn may_meet<S: Simd>(&self, s: S, corners: &[Points<S::F>; 3]) -> u32 {
+        let meets = Self::meet_eight(s, &splat_own(s, &self.own()), corners);
         s.bits(meets.met) | meets.doubt(s)
     }
 
