@@ -7,7 +7,7 @@ use std::sync::Arc;
 use boxwood::accel::{Accel, BuildCx, Hit, Mode, registry};
 use boxwood::geometry::eight::Rays;
 use boxwood::geometry::slabs::Boxes;
-use boxwood::geometry::tri::{self, Block, Eight, Fast, TestKind, TriTest, Watertight, corners, splat_own};
+use boxwood::geometry::tri::{Block, Eight, Fast, TestKind, TriTest, Watertight, corners, splat_own};
 use boxwood::geometry::{EightSlabs, Ray};
 use boxwood::scene::{self, Geometry, LoadCx};
 use boxwood::simd::{Kernel, LANES, Portable, Road, Simd};
@@ -136,7 +136,7 @@ fn by_hand(geometry: &Geometry, blocks: &[Block], rays: &[Ray], hits: &mut [Opti
         let mut best = None;
         let mut end = entered.ray.tmax;
         for (b, block) in blocks.iter().enumerate() {
-            let mut left = test.may_meet(Portable, &tri::corners(Portable, block, test.axes()));
+            let mut left = test.may_meet(Portable, &corners(Portable, block, test.axes()));
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;
                 left &= left - 1;

@@ -128,3 +128,13 @@ fn an_octree_keeps_to_its_references() {
         assert!(limit / 2 < taken && taken <= limit, "{taken} references where {limit} may be");
     }
 }
+
+/// Found by the stability lab: each of the copies asked for as many cells as all of them, and was sorted into those.
+#[test]
+fn a_two_level_grid_of_copies_keeps_to_its_references() {
+    let tri = [Vec3::new(0.0, 0.1, 0.2), Vec3::new(1.0, 0.0, 0.3), Vec3::new(0.3, 0.9, -0.2)];
+    let copies = 2_000;
+    let geometry = geometry_of(&scene_of(&vec![tri; copies]));
+    let references = stats(built("grid2", &[], &geometry).as_ref()).references;
+    assert!(references < 300 * copies as u64, "{references} references");
+}

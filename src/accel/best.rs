@@ -2,7 +2,7 @@
 
 use super::hit::{PrimHit, Query};
 use super::probe::Probe;
-use crate::geometry::tri::TriTest;
+use crate::geometry::tri::{TriHit, TriTest};
 use crate::scene::PrimRef;
 use glam::Vec3;
 
@@ -63,11 +63,27 @@ impl Best {
         query: &Q,
         probe: &mut P,
     ) -> bool {
+        self.tested(ray.hit(tri, self.tmin, self.hit.t), prim, query, probe)
+    }
+
+    /// The same of a triangle that a look at eight left in doubt.
+    #[inline(always)]
+    pub fn test_in_doubt<T: TriTest, Q: Query, P: Probe>(
+        &mut self,
+        ray: &T,
+        tri: &[Vec3; 3],
+        prim: PrimRef,
+        query: &Q,
+        probe: &mut P,
+    ) -> bool {
+        self.tested(ray.hit_in_doubt(tri, self.tmin, self.hit.t), prim, query, probe)
+    }
+
+    #[inline(always)]
+    fn tested<Q: Query, P: Probe>(&mut self, hit: Option<TriHit>, prim: PrimRef, query: &Q, probe: &mut P) -> bool {
         probe.prim();
-        let hit = ray.hit(tri, self.tmin, self.hit.t);
         probe.tested(prim, hit.map(|hit| hit.t));
-        let Some(hit) = hit else { return false };
-        self.offer(PrimHit { t: hit.t, u: hit.u, v: hit.v, prim }, query)
+        hit.is_some_and(|hit| self.offer(PrimHit { t: hit.t, u: hit.u, v: hit.v, prim }, query))
     }
 
     /// Keeps a hit in the ray's interval if it is closer, or as close with a lower index. True if the

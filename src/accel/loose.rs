@@ -28,7 +28,7 @@ impl Best {
                 while left != 0 {
                     let prim = prims[left.trailing_zeros() as usize];
                     left &= left - 1;
-                    if self.test(ray, &geometry.corners(prim), prim, query, probe) {
+                    if self.test_in_doubt(ray, &geometry.corners(prim), prim, query, probe) {
                         return true;
                     }
                 }

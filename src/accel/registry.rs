@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::params::{Param, ParamValues};
 use super::{Accel, BuildCx, BuildError, brute, bsp, bvh, grid, kdtree, octree, volumes, wide};
-use crate::geometry::tri::{Fast, TestKind, TriTest, Watertight};
+use crate::geometry::tri::{Exact, Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 
 /// What kind of structure it is: raw SAH costs are comparable only within one family.
@@ -45,6 +45,7 @@ pub struct Entry {
     pub params: &'static [Param],
     watertight: Build,
     fast: Build,
+    exact: Build,
 }
 
 impl Entry {
@@ -62,6 +63,7 @@ impl Entry {
         match test {
             TestKind::Watertight => (self.watertight)(geometry, p, cx),
             TestKind::Fast => (self.fast)(geometry, p, cx),
+            TestKind::Exact => (self.exact)(geometry, p, cx),
         }
     }
 
@@ -82,6 +84,7 @@ pub static ALL: &[Entry] = &[
         params: &[],
         watertight: brute::<Watertight, false>,
         fast: brute::<Fast, false>,
+        exact: brute::<Exact, false>,
     },
     Entry {
         id: "bound",
@@ -92,6 +95,7 @@ pub static ALL: &[Entry] = &[
         params: &[],
         watertight: brute::<Watertight, true>,
         fast: brute::<Fast, true>,
+        exact: brute::<Exact, true>,
     },
     Entry {
         id: "bvh",
@@ -102,6 +106,7 @@ pub static ALL: &[Entry] = &[
         params: bvh::PARAMS,
         watertight: bvh::build::<Watertight>,
         fast: bvh::build::<Fast>,
+        exact: bvh::build::<Exact>,
     },
     Entry {
         id: "wide",
@@ -112,6 +117,7 @@ pub static ALL: &[Entry] = &[
         params: wide::PARAMS,
         watertight: wide::build::<Watertight>,
         fast: wide::build::<Fast>,
+        exact: wide::build::<Exact>,
     },
     Entry {
         id: "volumes",
@@ -122,6 +128,7 @@ pub static ALL: &[Entry] = &[
         params: volumes::PARAMS,
         watertight: volumes::build::<Watertight>,
         fast: volumes::build::<Fast>,
+        exact: volumes::build::<Exact>,
     },
     Entry {
         id: "kdtree",
@@ -132,6 +139,7 @@ pub static ALL: &[Entry] = &[
         params: kdtree::PARAMS,
         watertight: kdtree::build::<Watertight>,
         fast: kdtree::build::<Fast>,
+        exact: kdtree::build::<Exact>,
     },
     Entry {
         id: "grid",
@@ -142,6 +150,7 @@ pub static ALL: &[Entry] = &[
         params: grid::PARAMS,
         watertight: grid::build::<Watertight>,
         fast: grid::build::<Fast>,
+        exact: grid::build::<Exact>,
     },
     Entry {
         id: "grid2",
@@ -152,6 +161,7 @@ pub static ALL: &[Entry] = &[
         params: grid::TWO_LEVEL_PARAMS,
         watertight: grid::build_two_level::<Watertight>,
         fast: grid::build_two_level::<Fast>,
+        exact: grid::build_two_level::<Exact>,
     },
     Entry {
         id: "octree",
@@ -162,6 +172,7 @@ pub static ALL: &[Entry] = &[
         params: octree::PARAMS,
         watertight: octree::build::<Watertight>,
         fast: octree::build::<Fast>,
+        exact: octree::build::<Exact>,
     },
     Entry {
         id: "bsp",
@@ -172,6 +183,7 @@ pub static ALL: &[Entry] = &[
         params: bsp::PARAMS,
         watertight: bsp::build::<Watertight>,
         fast: bsp::build::<Fast>,
+        exact: bsp::build::<Exact>,
     },
 ];
 

@@ -23,6 +23,7 @@ mod rays;
 mod render;
 mod scaling;
 mod scenes;
+mod stability;
 mod stats;
 mod structures;
 mod table;
@@ -62,6 +63,8 @@ enum Command {
     Scaling(scaling::Args),
     /// Time structures beside those of other libraries: Embree, tinybvh, obvhs, parry3d, bvh.
     Peers(peers::Args),
+    /// Check every structure and triangle test on scenes that break ray tracers, against exact arithmetic.
+    Stability(stability::Args),
     /// Compare bounding volumes around the nodes of one tree: tightness against cost.
     Volumes(volumes::Args),
     /// Render a picture to a PNG file.
@@ -94,6 +97,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Compare(args) => compare::run(&args, cancel),
         Command::Scaling(args) => scaling::run(&args, cancel),
         Command::Peers(args) => peers::run(&args, cancel),
+        Command::Stability(args) => stability::run(&args, cancel),
         Command::Volumes(args) => volumes::run(&args, cancel),
         Command::Render(args) => render::run(&args, cancel),
         Command::Rays(args) => rays::run(&args, cancel),

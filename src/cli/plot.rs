@@ -15,8 +15,11 @@ pub struct Panel {
     /// What is drawn.
     pub curves: Vec<Curve>,
     /// A curve to compare with: its name and a function that is moved through the least point of all.
-    pub guide: (&'static str, fn(f64) -> f64),
+    pub guide: Option<Guide>,
 }
+
+/// Its name, and a function.
+pub type Guide = (&'static str, fn(f64) -> f64);
 
 /// One structure.
 #[derive(Clone, Debug)]
@@ -70,8 +73,8 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
     let mesh = &mut chart.configure_mesh();
     mesh.x_desc(x).y_desc(y).label_style(text).axis_desc_style(text).x_label_formatter(&short).y_label_formatter(&short);
     mesh.light_line_style(BLACK.mix(0.04)).bold_line_style(BLACK.mix(0.12)).draw()?;
-    if let Some(least) = all.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))) {
-        let (name, law) = panel.guide;
+    let least = all.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    if let Some((least, (name, law))) = least.zip(panel.guide) {
         let steps = (0..=32).map(|i| least.0 * (xs.end / least.0).powf(f64::from(i) / 32.0));
         let line = steps.map(|x| (x, least.1 * law(x) / law(least.0))).filter(|p| ys.contains(&p.1));
         let style = BLACK.mix(0.5).stroke_width(1);
@@ -127,7 +130,7 @@ mod tests {
             points: [1e3, 1e4, 1e5].map(|n: f64| (n, 1e-6 * n.powf(power))).into(),
         };
         let guide: (_, fn(f64) -> f64) = ("N log N", |n| n * n.ln());
-        let mut panel = Panel { title: "Builds".to_owned(), axes: ["triangles", "s"], curves: vec![], guide };
+        let mut panel = Panel { title: "Builds".to_owned(), axes: ["triangles", "s"], curves: vec![], guide: Some(guide) };
         let empty = log_log(&[panel.clone()]).expect("drawn");
         panel.curves = vec![curve("bvh", 1.1), curve("kdtree", 1.2)];
         panel.curves[1].points.push((1e6, f64::NAN));

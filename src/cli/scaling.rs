@@ -178,13 +178,13 @@ fn panels(outcome: &Outcome) -> [Panel; 2] {
             title: format!("{}: builds, {threads} threads", outcome.model),
             axes: ["triangles", "seconds of a build"],
             curves: curves(|p| p.build_secs),
-            guide: ("N log N", |n| n * n.ln()),
+            guide: Some(("N log N", |n| n * n.ln())),
         },
         Panel {
             title: format!("{}: {} rays, {threads} threads", outcome.model, outcome.rays.id()),
             axes: ["triangles", "nanoseconds of a ray"],
             curves: curves(|p| p.ray_secs * 1e9),
-            guide: ("log N", f64::ln),
+            guide: Some(("log N", f64::ln)),
         },
     ]
 }

@@ -5,6 +5,7 @@ mod aabb;
 mod clip;
 mod degenerate;
 pub mod eight;
+pub mod expansion;
 pub mod hull;
 pub mod kdop;
 pub mod line;

@@ -153,6 +153,12 @@ impl Slabs {
         Self { o_lo: o_lo.into(), o_hi: o_hi.into(), inv: inv.into() }
     }
 
+    /// How much wider boxes are on the first axis: at least twice twelve roundoffs of the reach, see above.
+    #[inline(always)]
+    pub fn width_of_x(&self) -> f32 {
+        self.o_lo.x - self.o_hi.x
+    }
+
     /// With the axes in another order.
     #[inline(always)]
     pub fn in_order(&self, axes: [usize; 3]) -> Self {

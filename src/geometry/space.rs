@@ -64,6 +64,15 @@ impl Back {
         narrow((f64::from(t) + self.offset) * self.scale)
     }
 
+    /// How far a scaled t may be off for having been written as that world's t: nothing, but for rays that were moved and
+    /// for numbers with few digits.
+    pub fn rounding(&self, world_t: f32) -> f64 {
+        if self.offset == 0.0 && world_t.is_normal() {
+            return 0.0;
+        }
+        (f64::from(world_t.next_up()) - f64::from(world_t)) / self.scale
+    }
+
     /// The t of the scaled ray of a world's t.
     pub fn scaled_t(&self, t: f32) -> f32 {
         narrow(f64::from(t) / self.scale - self.offset)

@@ -20,6 +20,7 @@ mod report;
 mod sah_curve;
 mod sample;
 pub mod scaling;
+pub mod stability;
 pub mod statistics;
 mod timing;
 mod turns;

@@ -216,7 +216,7 @@ fn second(kind: RayKind, point: &Point, geometry: &Geometry, light: Vec3, sample
 /// and the light is inside a room if the camera is.
 fn light(camera: &Camera) -> Vec3 {
     let frame = camera.frame();
-    let distance = camera.eye.distance(camera.target);
+    let distance = camera.distance();
     camera.eye + (frame.up * 0.5 + frame.right * 0.25) * distance
 }
 

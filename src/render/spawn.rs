@@ -7,6 +7,10 @@ use crate::geometry::num::UNIT_ROUNDOFF;
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Geometry;
 
+/// More than the roundings that a point of a surface and the next ray's test carry: each of three terms of the point is
+/// rounded three times, and twelve displace a plane that is met (see [`crate::geometry::Slabs`]).
+const ROUNDINGS: f32 = 16.0;
+
 /// A point on a surface that rays may leave from.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
@@ -27,7 +31,7 @@ impl Point {
         let normal = if normal.dot(ray.dir) > 0.0 { -normal } else { normal };
         // `at` carries some roundings of its terms, the next ray's test some of the triangle's size.
         let reach = a.abs().max(b.abs()).max(c.abs()).max_element() + Aabb::of_triangle(&[a, b, c]).size().max_element();
-        Self { at, normal, clearance: 16.0 * UNIT_ROUNDOFF * reach }
+        Self { at, normal, clearance: ROUNDINGS * UNIT_ROUNDOFF * reach }
     }
 
     /// The ray from here along `dir`, in the world; `dir` points away from the surface.
@@ -35,10 +39,15 @@ impl Point {
         Ray::new(self.start(geometry), dir)
     }
 
-    /// The segment from here to a point in the world; it ends just before that point.
+    /// The segment from here to a point in the world; it ends before that point by as much as a surface through it may
+    /// be found too near.
     pub fn segment_to(&self, geometry: &Geometry, to: Vec3) -> Ray {
         let start = self.start(geometry);
-        Ray { origin: start, dir: to - start, tmin: 0.0, tmax: 1.0 - 1e-4 }
+        let there = geometry.space().point(to);
+        let length = (there - self.at).length();
+        let slack = ROUNDINGS * UNIT_ROUNDOFF * (there.abs().max_element() + length);
+        let tmax = if length > slack { 1.0 - slack / length } else { 0.0 };
+        Ray { origin: start, dir: to - start, tmin: 0.0, tmax }
     }
 
     fn start(&self, geometry: &Geometry) -> Vec3 {

@@ -31,6 +31,11 @@ pub struct Camera {
     pub projection: Projection,
 }
 
+/// Also of vectors whose squares 32 bits do not hold.
+fn length(v: Vec3) -> f32 {
+    crate::geometry::num::narrow(v.as_dvec3().length())
+}
+
 /// The axes of a camera, of unit length and perpendicular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
@@ -53,6 +58,11 @@ impl Camera {
         let aside = forward.cross(self.up.normalize_or(Vec3::Y));
         let right = if aside.length_squared() > 1e-12 { aside.normalize_or_zero() } else { forward.any_orthonormal_vector() };
         Frame { right, up: right.cross(forward), forward }
+    }
+
+    /// From the eye to what it looks at.
+    pub fn distance(&self) -> f32 {
+        length(self.target - self.eye)
     }
 
     /// Half the width and half the height of the picture: at unit distance for a perspective, in
@@ -92,7 +102,7 @@ impl Camera {
         let centre = bounds.centre();
         let margin = 1.08;
         let corners = bounds.corners().map(|p| p - centre);
-        let extent = corners.iter().map(|p| p.length()).fold(0.0, f32::max).max(f32::MIN_POSITIVE * 1e6);
+        let extent = corners.iter().map(|p| length(*p)).fold(0.0, f32::max).max(f32::MIN_POSITIVE * 1e6);
         let (x, y, z) = (|p: &Vec3| p.dot(frame.right).abs(), |p: &Vec3| p.dot(frame.up).abs(), |p: &Vec3| p.dot(frame.forward));
         let half = self.half_size(aspect);
         match self.projection {

@@ -47,11 +47,7 @@ pub fn zoom_by(factor: f32, camera: &Camera, at: Vec2, aspect: f32) -> Camera {
         Projection::Perspective { .. } => {
             let closer = Camera { eye: towards(camera.eye), target: towards(camera.target), ..*camera };
             // At the end of 32 bits eye and target would fall together.
-            if closer.eye.distance(closer.target) > 1e-6 * closer.target.length().max(f32::MIN_POSITIVE) {
-                closer
-            } else {
-                *camera
-            }
+            if closer.distance() > 1e-6 * closer.target.length().max(f32::MIN_POSITIVE) { closer } else { *camera }
         }
         Projection::Orthographic { height } => {
             let shift = towards(camera.target) - camera.target;
@@ -78,7 +74,7 @@ pub fn toggle_projection(camera: &Camera) -> Camera {
 /// How much of the world the height of the view spans at the target's distance.
 fn height_at_target(camera: &Camera) -> f32 {
     match camera.projection {
-        Projection::Perspective { fov_y } => 2.0 * (fov_y * 0.5).tan() * camera.eye.distance(camera.target),
+        Projection::Perspective { fov_y } => 2.0 * (fov_y * 0.5).tan() * camera.distance(),
         Projection::Orthographic { height } => height,
     }
 }

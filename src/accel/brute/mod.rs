@@ -101,7 +101,7 @@ impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
             let prim = self.geometry.live(first + lane);
-            if best.test(test, &block.triangle(lane), prim, query, probe) {
+            if best.test_in_doubt(test, &block.triangle(lane), prim, query, probe) {
                 return true;
             }
         }

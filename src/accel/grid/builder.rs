@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::affordable;
 use super::contents::{Contents, Refusal};
-use super::lattice::Lattice;
 use super::uniform::Built;
 use crate::accel::{BuildCx, BuildError};
 use crate::scene::Geometry;
@@ -17,8 +17,8 @@ const REFUSAL: Refusal = Refusal { structure: "grid", remedy: "Lower the density
 /// references than 32 bits can number.
 pub fn build(geometry: &Arc<Geometry>, density: f64, cx: &BuildCx) -> Result<Built, BuildError> {
     cx.cancel.check()?;
-    let lattice = Lattice::new(geometry.bounds(), geometry.live_count(), density);
+    let (lattice, remark) = affordable::lattice(geometry, density, cx)?;
     let cells = REFUSAL.numbered(lattice.count() as u64, "cells")?;
     let contents = Contents::sort(geometry, cells, &lattice, &REFUSAL, cx)?;
-    Ok(Built { geometry: Arc::clone(geometry), lattice, contents })
+    Ok(Built { geometry: Arc::clone(geometry), lattice, contents, remark })
 }

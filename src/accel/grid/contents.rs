@@ -111,7 +111,7 @@ impl Contents {
         &self.refs[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// Tests a ray that enters a cell against all that is in it. True if the search is over.
+    /// Tests a ray that has entered a cell against all that is in it. True if the search is over.
     #[inline(always)]
     pub fn test<T: TriTest, Q: Query, P: Probe>(
         &self,
@@ -121,8 +121,6 @@ impl Contents {
         best: &mut Best,
         (query, probe): (&Q, &mut P),
     ) -> bool {
-        probe.node();
-        probe.at(num::index(cell));
         let refs = self.of(cell);
         if refs.is_empty() {
             return false;

@@ -1,9 +1,10 @@
 //! Grids: space is cut into equal cells, and a ray steps from cell to cell.
 //!
 //! [`lattice`] knows where cells are, [`overlap`] which of them a triangle belongs into, [`contents`]
-//! what they hold, [`walk`] how a ray steps through them. A [`uniform`] grid is one lattice, a
+//! what they hold, [`affordable`] how many there may be, [`walk`] how a ray steps through them. A [`uniform`] grid is one lattice, a
 //! [`two_level`] grid has lattices in the cells of a coarse one.
 
+mod affordable;
 mod builder;
 mod contents;
 mod lattice;

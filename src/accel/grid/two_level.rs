@@ -71,6 +71,8 @@ pub struct Built {
     pub cuts: Cuts,
     /// The references of each.
     pub contents: Contents,
+    /// What the builder decided, in words.
+    pub remark: Option<String>,
     /// The memory of the coarse cells.
     pub _charge: Charge,
 }
@@ -99,16 +101,21 @@ impl<T: TriTest> TwoLevel<T> {
         (query, probe): (&Q, &mut P),
     ) -> bool {
         let Built { geometry, cuts, contents, .. } = &self.built;
-        let top = cuts.tops[cuts.lattice.index(at)];
+        let i = cuts.lattice.index(at);
+        let top = cuts.tops[i];
         let first = top.first as usize;
+        probe.node();
+        probe.at(num::index(1 + i));
         if top.is_whole() {
             return contents.test(first, geometry, test, best, (query, probe));
         }
-        probe.node();
         let within = cuts.within(at, top);
         let Some(mut walk) = Walk::enter(&within, line) else { return false };
         loop {
-            if contents.test(first + within.index(walk.at), geometry, test, best, (query, probe)) {
+            let cell = first + within.index(walk.at);
+            probe.node();
+            probe.at(num::index(self.first_cut() + cell));
+            if contents.test(cell, geometry, test, best, (query, probe)) {
                 return true;
             }
             match walk.step(best.t()) {
@@ -193,6 +200,10 @@ impl<T: TriTest> Cells for TwoLevel<T> {
 
     fn layout(&self) -> Layout {
         Layout::Nested { slack: num::narrow(self.built.cuts.lattice.slack) }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.built.remark.iter().cloned().collect()
     }
 
     fn memory(&self) -> Vec<MemoryPart> {

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
+use super::affordable;
 use super::contents::{Contents, Overlapped, Refusal, counts};
 use super::lattice::Lattice;
 use super::two_level::{Built, Cuts, Top};
@@ -37,16 +38,17 @@ const CHUNK: usize = 1 << 14;
 /// references than 32 bits can number.
 pub fn build(geometry: &Arc<Geometry>, densities: Densities, cx: &BuildCx) -> Result<Built, BuildError> {
     cx.cancel.check()?;
-    let lattice = Lattice::new(geometry.bounds(), geometry.live_count(), densities.top);
+    let (lattice, remark) = affordable::lattice(geometry, densities.top, cx)?;
     let tops = REFUSAL.numbered(lattice.count() as u64, "cells")?;
     let charge = |bytes: usize| cx.budget.charge(bytes as u64).map_err(|over| REFUSAL.too_large(over));
     let (kept, counting) = (charge(tops * size_of::<Top>())?, charge(tops * size_of::<u32>())?);
     cx.progress.start("count coarse", geometry.live_count() as u64);
     let counts = counts(geometry, tops, &lattice, cx)?;
-    let (cuts, cells) = cut(lattice, counts, densities.leaf, cx)?;
+    let leaf = densities.leaf * affordable::cuts(&counts, densities.leaf, geometry.live_count(), cx)?;
+    let (cuts, cells) = cut(lattice, counts, leaf, cx)?;
     drop(counting);
     let contents = Contents::sort(geometry, cells, &cuts, &REFUSAL, cx)?;
-    Ok(Built { geometry: Arc::clone(geometry), cuts, contents, _charge: kept })
+    Ok(Built { geometry: Arc::clone(geometry), cuts, contents, remark, _charge: kept })
 }
 
 /// Cuts each cell of the coarse grid, and says how many cells that makes.

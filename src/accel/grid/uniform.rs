@@ -24,6 +24,8 @@ pub struct Built {
     pub lattice: Lattice,
     /// The references of each.
     pub contents: Contents,
+    /// What the builder decided, in words.
+    pub remark: Option<String>,
 }
 
 /// A uniform grid traced with the triangle test `T`.
@@ -47,13 +49,16 @@ impl<T: TriTest> Structure for Grid<T> {
 
     #[inline]
     fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit> {
-        let Built { geometry, lattice, contents } = &self.built;
+        let Built { geometry, lattice, contents, .. } = &self.built;
         let test = T::prepare(ray, geometry.bounds());
         let mut best = Best::new(ray.tmin, ray.tmax);
         let line = Line::new(ray, lattice.slack);
         let mut walk = Walk::enter(lattice, &line)?;
         loop {
-            let over = contents.test(lattice.index(walk.at), geometry, &test, &mut best, (query, probe));
+            let cell = lattice.index(walk.at);
+            probe.node();
+            probe.at(num::index(cell + 1));
+            let over = contents.test(cell, geometry, &test, &mut best, (query, probe));
             if over || walk.step(best.t()) != Step::In {
                 return best.found();
             }
@@ -90,6 +95,10 @@ impl<T: TriTest> Cells for Grid<T> {
 
     fn layout(&self) -> Layout {
         Layout::Flat { resolution: self.built.lattice.resolution.map(num::index), slack: num::narrow(self.built.lattice.slack) }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.built.remark.iter().cloned().collect()
     }
 
     fn memory(&self) -> Vec<MemoryPart> {

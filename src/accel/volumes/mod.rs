@@ -32,7 +32,7 @@ use crate::geometry::Aabb;
 use crate::geometry::kdop::Octahedron;
 use crate::geometry::obb::Obb;
 use crate::geometry::sphere::Sphere;
-use crate::geometry::tri::{Fast, TestKind, TriTest, Watertight};
+use crate::geometry::tri::{Exact, Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 use fit::too_large;
 use glam::DVec3;
@@ -46,13 +46,14 @@ pub struct Kind {
     pub id: &'static str,
     watertight: Make,
     fast: Make,
+    exact: Make,
 }
 
 type Make = fn(Built, &BuildCx) -> Result<Box<dyn Volumes>, BuildError>;
 
 impl Kind {
     const fn of<V: Volume>() -> Self {
-        Self { id: V::ID, watertight: make::<Watertight, V>, fast: make::<Fast, V> }
+        Self { id: V::ID, watertight: make::<Watertight, V>, fast: make::<Fast, V>, exact: make::<Exact, V> }
     }
 }
 
@@ -117,6 +118,7 @@ pub fn build_volumes(
     match test {
         TestKind::Watertight => (kind.watertight)(built, cx),
         TestKind::Fast => (kind.fast)(built, cx),
+        TestKind::Exact => (kind.exact)(built, cx),
     }
 }
 

@@ -192,7 +192,7 @@ impl Beam {
         if left == 0 {
             return true;
         }
-        let own = self.own(s);
+        let (own, slabs) = (self.own(s), self.slabs_in_order(s));
         let axes = self.axes.map(|axis| axis % 3);
         let mut in_memory = [[[0.0; LANES]; 3]; 3];
         let [a, b, c] = all;
@@ -206,12 +206,12 @@ impl Beam {
             let [a, b, c] = &in_memory;
             let corner = [splat(s, a, axes, lane), splat(s, b, axes, lane), splat(s, c, axes, lane)];
             // Most are met by none of the rays.
-            let meets = T::meet_eight(s, &own, &corner);
+            let meets = T::meet_eight(s, &own, &slabs, &corner);
             if !meets.any(s) {
                 continue;
             }
             let interval = [s.load(&self.tmins), s.load(&self.ends)];
-            let hits = meets.inside(s, &self.slabs_in_order(s), interval, &corner);
+            let hits = meets.inside(s, &slabs, interval, &corner);
             if self.keep::<S, T, B, Q>(s, &hits, (block, points), lane, query) {
                 any = true;
                 // Rays that are done end before they begin.
@@ -277,7 +277,7 @@ impl Beam {
             let found = PrimHit { t: self.ends[lane], u: self.u[lane], v: self.v[lane], prim: self.prims[lane] };
             let mut best = Best::with(self.tmins[lane], found);
             let over = if doubt >> lane & 1 == 1 {
-                best.test(&self.ray::<T>(lane), tri, prim, query, &mut Off::plain())
+                best.test_in_doubt(&self.ray::<T>(lane), tri, prim, query, &mut Off::plain())
             } else {
                 best.offer(PrimHit { t: t[lane], u: u[lane], v: v[lane], prim }, query)
             };

@@ -81,7 +81,7 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
                 bits(block.lanes()).any(|lane| best.test(&test, &block.triangle(points, lane), block.prim(lane), query, probe))
             } else {
                 let corners = block.corners(s, points, axes);
-                let meets = T::meet_eight(s, &own, &corners);
+                let meets = T::meet_eight(s, &own, &in_order, &corners);
                 meets.any(s) && {
                     let interval = [s.splat(best.tmin()), s.splat(best.t())];
                     found.keep(s, &meets.inside(s, &in_order, interval, &corners), block.lanes());
@@ -154,7 +154,7 @@ impl Found {
             let lane = left.trailing_zeros() as usize % LANES;
             left &= left - 1;
             let over = if self.doubt >> lane & 1 == 1 {
-                best.test(test, &block.triangle(points, lane), block.prim(lane), query, probe)
+                best.test_in_doubt(test, &block.triangle(points, lane), block.prim(lane), query, probe)
             } else {
                 let hit = PrimHit { t: self.t[lane], u: self.u[lane], v: self.v[lane], prim: block.prim(lane) };
                 best.offer(hit, query)

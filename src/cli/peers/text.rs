@@ -36,7 +36,7 @@ fn table(rows: &[&PeerRow], triangles: u64) -> String {
     let mut table = Table::new(&headers);
     let mut notes = String::new();
     for row in rows {
-        let mut cells = vec![row.id.clone(), row.library.clone(), test(row).to_owned(), row.call.id().to_owned()];
+        let mut cells = vec![row.id.clone(), row.library.clone(), row.test.to_owned(), row.call.id().to_owned()];
         let per_triangle = row.bytes.map(|bytes| bytes as f64 / triangles.max(1) as f64);
         cells.push(or_missing(row.build.as_ref(), |build| number(build.median * 1e3)));
         cells.push(or_missing(row.build.as_ref(), |build| number(build.half_iqr * 1e3)));
@@ -53,14 +53,6 @@ fn table(rows: &[&PeerRow], triangles: u64) -> String {
         notes += if notes.ends_with(&line) { "" } else { &line };
     }
     table.render() + &notes
-}
-
-fn test(row: &PeerRow) -> &'static str {
-    match (row.peer, row.watertight) {
-        (false, true) => "watertight",
-        (true, true) => "robust",
-        (_, false) => "fast",
-    }
 }
 
 /// Rays a second, and by how much the rounds differ.

@@ -2,7 +2,7 @@
 
 use super::{Meets, Own, TestKind, TriHit, TriTest};
 use crate::geometry::eight::{Points, Rays};
-use crate::geometry::{Aabb, Ray, Slabs};
+use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::Simd;
 use glam::Vec3;
 
@@ -52,7 +52,7 @@ impl TriTest for Fast {
     }
 
     #[inline(always)]
-    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, [a, b, c]: &[Points<S::F>; 3]) -> Meets<S> {
+    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, _: &EightSlabs<S::F>, [a, b, c]: &[Points<S::F>; 3]) -> Meets<S> {
         let &[ox, oy, oz, dx, dy, dz, _] = own;
         let (o, d) = (Points { x: ox, y: oy, z: oz }, Points { x: dx, y: dy, z: dz });
         let (e1, e2) = (b.minus(s, *a), c.minus(s, *a));

@@ -6,10 +6,13 @@
 //! interval, and only then compared with the closed `[tmin, tmax]`.
 
 mod block;
+pub mod bounds;
+mod exact;
 mod fast;
 mod watertight;
 
 pub use block::{Block, Eight, corners};
+pub use exact::Exact;
 pub use fast::Fast;
 pub use watertight::Watertight;
 
@@ -63,7 +66,7 @@ pub trait TriTest: Copy + Send + Sync + 'static {
 
     /// The same of eight triangles and as many rays, one of each in a lane, by the same operations in the same
     /// order and unfused; the corners come with the axes in the order of [`Self::axes`].
-    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, corners: &[Points<S::F>; 3]) -> Meets<S>;
+    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, slabs: &EightSlabs<S::F>, corners: &[Points<S::F>; 3]) -> Meets<S>;
 
     /// The order of the axes in which the test of eight takes coordinates.
     #[inline(always)]
@@ -84,7 +87,7 @@ pub trait TriTest: Copy + Send + Sync + 'static {
     /// accept are among them. The corners come with the axes in the order of [`Self::axes`].
     #[inline(always)]
     fn may_meet<S: Simd>(&self, s: S, corners: &[Points<S::F>; 3]) -> u32 {
-        let meets = Self::meet_eight(s, &splat_own(s, &self.own()), corners);
+        let meets = Self::meet_eight(s, &splat_own(s, &self.own()), &EightSlabs::splat(s, self.slabs()), corners);
         s.bits(meets.met) | meets.doubt(s)
     }
 
@@ -98,7 +101,13 @@ pub trait TriTest: Copy + Send + Sync + 'static {
         interval: [S::F; 2],
         corners: &[Points<S::F>; 3],
     ) -> Hits<S> {
-        Self::meet_eight(s, own, corners).inside(s, slabs, interval, corners)
+        Self::meet_eight(s, own, slabs, corners).inside(s, slabs, interval, corners)
+    }
+
+    /// The whole test of a triangle that the look at eight left in doubt.
+    #[inline(always)]
+    fn hit_in_doubt(&self, tri: &[Vec3; 3], tmin: f32, tmax: f32) -> Option<TriHit> {
+        self.hit(tri, tmin, tmax)
     }
 
     /// The whole test, by the rule above.
@@ -180,17 +189,29 @@ pub enum TestKind {
     Watertight,
     /// [`Fast`]: fewer operations, but rays through edges may slip through.
     Fast,
+    /// [`Exact`]: no rounding decides anything.
+    Exact,
 }
 
 impl TestKind {
     /// Every test, the default first.
-    pub const ALL: [Self; 2] = [Self::Watertight, Self::Fast];
+    pub const ALL: [Self; 3] = [Self::Watertight, Self::Fast, Self::Exact];
 
     /// The name used on the command line and in files.
     pub const fn id(self) -> &'static str {
         match self {
             Self::Watertight => "watertight",
             Self::Fast => "fast",
+            Self::Exact => "exact",
+        }
+    }
+
+    /// The name in the window.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Watertight => "Watertight",
+            Self::Fast => "Fast",
+            Self::Exact => "Exact",
         }
     }
 
@@ -199,6 +220,7 @@ impl TestKind {
         match self {
             Self::Watertight => "Woop, Benthin and Wald 2013: rays through shared edges and vertices never slip through.",
             Self::Fast => "Möller and Trumbore 1997: fewer operations; rays through shared edges may slip through.",
+            Self::Exact => "Shewchuk 1997: exact signs behind a filter, and t correctly rounded: no hit is a matter of rounding.",
         }
     }
 }
@@ -208,7 +230,7 @@ impl std::str::FromStr for TestKind {
 
     fn from_str(s: &str) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|kind| kind.id() == s);
-        found.ok_or_else(|| format!("there is no triangle test '{s}': use watertight or fast"))
+        found.ok_or_else(|| format!("there is no triangle test '{s}': use watertight, fast or exact"))
     }
 }
 

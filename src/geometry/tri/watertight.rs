@@ -3,7 +3,7 @@
 use super::{Meets, Own, TestKind, TriHit, TriTest};
 use crate::geometry::eight::{Points, Rays};
 use crate::geometry::num::narrow;
-use crate::geometry::{Aabb, Ray, Slabs};
+use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::Simd;
 use glam::Vec3;
 
@@ -31,16 +31,7 @@ impl TriTest for Watertight {
 
     #[inline(always)]
     fn prepare(ray: &Ray, bounds: &Aabb) -> Self {
-        let d = ray.dir;
-        let a = d.abs();
-        let kz = if a.x > a.y && a.x > a.z {
-            0
-        } else if a.y > a.z {
-            1
-        } else {
-            2
-        };
-        let axes = 2 * kz + u32::from(d[kz as usize] < 0.0);
+        let (d, axes) = (ray.dir, order_of(ray.dir));
         let [kx, ky, kz] = AXES[axes as usize % 8];
         let shear = Vec3::new(d[kx] / d[kz], d[ky] / d[kz], 1.0 / d[kz]);
         let origin = Vec3::new(ray.origin[kx], ray.origin[ky], ray.origin[kz]);
@@ -75,7 +66,7 @@ impl TriTest for Watertight {
     }
 
     #[inline(always)]
-    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, [a, b, c]: &[Points<S::F>; 3]) -> Meets<S> {
+    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, _: &EightSlabs<S::F>, [a, b, c]: &[Points<S::F>; 3]) -> Meets<S> {
         let (a, b, c) = (shear(s, own, *a), shear(s, own, *b), shear(s, own, *c));
         let u = s.sub(s.mul(c.x, b.y), s.mul(c.y, b.x));
         let v = s.sub(s.mul(a.x, c.y), s.mul(a.y, c.x));
@@ -99,16 +90,8 @@ impl TriTest for Watertight {
 
     #[inline(always)]
     fn own_of_eight<S: Simd>(s: S, rays: &Rays<S::F>) -> Own<S::F> {
-        let (d, o, a) = (rays.dir, rays.origin, rays.dir.abs(s));
-        let (zero, one) = (s.splat(0.0), s.splat(1.0));
-        let z_is_x = s.and(s.lt(a.y, a.x), s.lt(a.z, a.x));
-        let z_is_y = s.lt(a.z, a.y);
-        let (d, o) = (turned(s, d, z_is_x, z_is_y), turned(s, o, z_is_x, z_is_y));
-        let swap = s.lt(d.z, zero);
-        let (d, o) = (swapped(s, d, swap), swapped(s, o, swap));
-        let axes = s.select(z_is_x, zero, s.select(z_is_y, s.splat_bits(2), s.splat_bits(4)));
-        let axes = s.add_bits(axes, s.select(swap, s.splat_bits(1), zero));
-        [o.x, o.y, o.z, s.div(d.x, d.z), s.div(d.y, d.z), s.div(one, d.z), axes]
+        let (o, d, axes) = in_order(s, rays);
+        [o.x, o.y, o.z, s.div(d.x, d.z), s.div(d.y, d.z), s.div(s.splat(1.0), d.z), axes]
     }
 
     #[inline(always)]
@@ -120,7 +103,35 @@ impl TriTest for Watertight {
 
 /// The axis of the greatest direction component becomes z; x and y swap to keep the winding. By the
 /// number `2 * z + swap`.
-const AXES: [[usize; 3]; 8] = [[1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1], [0, 1, 2], [1, 0, 2], [0, 1, 2], [1, 0, 2]];
+pub const AXES: [[usize; 3]; 8] = [[1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1], [0, 1, 2], [1, 0, 2], [0, 1, 2], [1, 0, 2]];
+
+/// The number of the order of axes for a direction.
+#[inline(always)]
+pub fn order_of(dir: Vec3) -> u32 {
+    let a = dir.abs();
+    let z = if a.x > a.y && a.x > a.z {
+        0
+    } else if a.y > a.z {
+        1
+    } else {
+        2
+    };
+    2 * z + u32::from(dir[z as usize] < 0.0)
+}
+
+/// Origins and directions of eight rays with the axes in the order that each asks for, and its number as bits.
+#[inline(always)]
+pub fn in_order<S: Simd>(s: S, rays: &Rays<S::F>) -> (Points<S::F>, Points<S::F>, S::F) {
+    let (d, o, a) = (rays.dir, rays.origin, rays.dir.abs(s));
+    let zero = s.splat(0.0);
+    let z_is_x = s.and(s.lt(a.y, a.x), s.lt(a.z, a.x));
+    let z_is_y = s.lt(a.z, a.y);
+    let (d, o) = (turned(s, d, z_is_x, z_is_y), turned(s, o, z_is_x, z_is_y));
+    let swap = s.lt(d.z, zero);
+    let axes = s.select(z_is_x, zero, s.select(z_is_y, s.splat_bits(2), s.splat_bits(4)));
+    let axes = s.add_bits(axes, s.select(swap, s.splat_bits(1), zero));
+    (swapped(s, o, swap), swapped(s, d, swap), axes)
+}
 
 /// As [`Watertight::sheared`] of corners whose axes are in order.
 #[inline(always)]

@@ -156,6 +156,8 @@ pub struct Label {
     pub peer: bool,
     /// Whether no ray slips between triangles that share an edge.
     pub watertight: bool,
+    /// The triangle test, or what a peer calls it.
+    pub test: &'static str,
     /// The parameters of ours.
     pub params: BTreeMap<&'static str, Value>,
 }
@@ -163,7 +165,8 @@ pub struct Label {
 impl Label {
     /// Of a peer.
     fn peer(id: &str, library: &str, watertight: bool) -> Self {
-        Self { id: id.to_owned(), library: library.to_owned(), peer: true, watertight, params: BTreeMap::new() }
+        let test = if watertight { "robust" } else { "fast" };
+        Self { id: id.to_owned(), library: library.to_owned(), peer: true, watertight, test, params: BTreeMap::new() }
     }
 }
 

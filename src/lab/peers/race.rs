@@ -22,8 +22,10 @@ pub struct PeerRow {
     pub library: String,
     /// Whether it is another library's.
     pub peer: bool,
-    /// Whether no ray slips between triangles: our test of that name, Embree's robust scenes.
+    /// Whether no ray slips between triangles: all our tests but the fast one, Embree's robust scenes.
     pub watertight: bool,
+    /// The triangle test, or what a peer calls it.
+    pub test: &'static str,
     /// How its rays are handed over.
     pub call: Call,
     /// Threads that built and traced.
@@ -144,6 +146,7 @@ impl BuildLane {
             library: label.library,
             peer: label.peer,
             watertight: label.watertight,
+            test: label.test,
             call,
             threads,
             params: label.params,

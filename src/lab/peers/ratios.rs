@@ -94,6 +94,7 @@ mod tests {
             library: String::new(),
             peer,
             watertight,
+            test: "",
             call,
             threads: 1,
             params: BTreeMap::new(),

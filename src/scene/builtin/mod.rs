@@ -22,6 +22,7 @@ mod terrain;
 
 use super::{Camera, FirstView, LoadCx, Projection, Reason, Scene};
 use glam::Vec3;
+pub(crate) use random::Random;
 use spec::Spec;
 
 /// What the name of a built-in scene begins with.

@@ -4,7 +4,7 @@
 use glam::Vec3;
 
 /// SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators").
-pub(super) struct Random(u64);
+pub struct Random(u64);
 
 /// The golden ratio as a fraction of 2^64: odd, so adding it runs through every state.
 const STEP: u64 = 0x9E37_79B9_7F4A_7C15;

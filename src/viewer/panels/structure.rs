@@ -43,8 +43,7 @@ fn choice(ui: &mut Ui, state: &State, commands: &mut Commands) {
 fn test(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.horizontal(|ui| {
         for kind in TestKind::ALL {
-            let label = if kind == TestKind::Watertight { "Watertight" } else { "Fast" };
-            if ui.radio(state.settings.test == kind, label).on_hover_text(kind.help()).clicked() {
+            if ui.radio(state.settings.test == kind, kind.name()).on_hover_text(kind.help()).clicked() {
                 commands.push(Command::Test(kind));
             }
         }

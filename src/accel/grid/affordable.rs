@@ -1,0 +1,64 @@
+//! How fine a grid may be. Cells go with the number of triangles, as on a surface, where each triangle is in a few
+//! cells. Where triangles lie upon each other, or reach across the scene, each is in as many cells as all of
+//! them ask for: then there are fewer cells.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::contents::Overlapped;
+use super::lattice::Lattice;
+use crate::accel::BuildCx;
+use crate::scene::Geometry;
+use crate::task::Cancelled;
+
+/// References for each triangle that a level of a grid may make, about.
+const MOST: f64 = 64.0;
+/// Triangles looked at to find out how many they are.
+const SAMPLE: usize = 1024;
+/// Cells summed up between two looks at the cancel flag.
+const CHUNK: usize = 1 << 14;
+
+/// A triangle is in about `c^(2/3)` of `c` cells; the share of the cells that leaves `most` of `references`.
+fn share(references: f64, most: f64) -> f64 {
+    if references > most { (most / references).powf(1.5) } else { 1.0 }
+}
+
+/// A lattice of about `density` cells a triangle, or of fewer, and what is to be said of it.
+pub fn lattice(geometry: &Geometry, density: f64, cx: &BuildCx) -> Result<(Lattice, Option<String>), Cancelled> {
+    let triangles = geometry.live_count();
+    let wanted = Lattice::new(geometry.bounds(), triangles, density);
+    let (mut looked_at, mut references) = (0.0, 0.0);
+    for i in (0..triangles).step_by(triangles.div_ceil(SAMPLE).max(1)) {
+        cx.cancel.check()?;
+        looked_at += 1.0;
+        wanted.overlapped(&geometry.corners(geometry.live(i)), &cx.cancel, &mut |_| {
+            references += 1.0;
+            Ok(())
+        })?;
+    }
+    let share = share(references, MOST * looked_at);
+    if share == 1.0 {
+        return Ok((wanted, None));
+    }
+    let fewer = Lattice::new(geometry.bounds(), triangles, density * share);
+    let remark = format!(
+        "{} cells instead of {}, as a triangle would be in {:.0} of them.",
+        fewer.count(),
+        wanted.count(),
+        references / looked_at
+    );
+    Ok((fewer, Some(remark)))
+}
+
+/// The share of the density that the cells of a coarse grid can be cut with.
+pub fn cuts(counts: &[AtomicU32], density: f64, triangles: usize, cx: &BuildCx) -> Result<f64, Cancelled> {
+    let (mut coarse, mut cut) = (0.0, 0.0);
+    for chunk in counts.chunks(CHUNK) {
+        cx.cancel.check()?;
+        for count in chunk {
+            let refs = f64::from(count.load(Ordering::Relaxed));
+            coarse += refs;
+            cut += refs * (density * refs).max(1.0).powf(2.0 / 3.0);
+        }
+    }
+    Ok(share(cut, f64::max(MOST * triangles as f64, 2.0 * coarse)))
+}

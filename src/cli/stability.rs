@@ -1,0 +1,232 @@
+//! `boxwood stability`: structures and triangle tests on scenes that break ray tracers, against exact arithmetic.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use serde::Serialize;
+
+use super::args::{MachineArgs, seconds};
+use super::bar;
+use super::context::Context;
+use super::failure::Failure;
+use super::npy;
+use super::output::{OutFile, print, print_json};
+use super::plot::{Curve, Panel, log_log};
+use super::structures::Many;
+use super::table::{Table, facts};
+use crate::accel::{BuildCx, registry};
+use crate::geometry::tri::TestKind;
+use crate::lab::MachineFacts;
+use crate::lab::format::{count, number, percent};
+use crate::lab::stability::cases::{self, Case, Trial};
+use crate::lab::stability::{CaseRow, Options, Row, Verdict, check, check_case, shrink};
+use crate::scene::Reason;
+use crate::task::{Cancel, Progress};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// The cases: ids between commas, or all.
+    #[arg(long, value_name = "all|ID,ID", default_value = "all")]
+    cases: Chosen,
+    /// The structures: ids between commas, or all.
+    #[arg(long, value_name = "all|ID,ID", default_value = "all")]
+    structures: Many,
+    /// Makes scenes and rays: the same for the same number.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// About so many rays a case.
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..))]
+    rays: u32,
+    /// The least seconds timed of each structure with each test.
+    #[arg(long, default_value = "0.01", value_parser = seconds)]
+    secs: f64,
+    /// A folder to write to: report.json, error-time.svg, and for each check that failed the smallest scene and the ray
+    /// that still fail (.obj, .npy).
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Cases by id.
+#[derive(Clone, Debug)]
+struct Chosen(Vec<&'static Case>);
+
+impl FromStr for Chosen {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        if s == "all" {
+            return Ok(Self(cases::ALL.iter().collect()));
+        }
+        let ids = || cases::ALL.iter().map(|case| case.id).collect::<Vec<_>>().join(", ");
+        let find = |id: &str| cases::find(id.trim()).ok_or_else(|| format!("there is no case '{id}'; there are {}", ids()));
+        s.split(',').map(find).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+/// What is printed as JSON.
+#[derive(Serialize)]
+struct Outcome {
+    seed: u64,
+    machine: MachineFacts,
+    cases: Vec<CaseRow>,
+}
+
+pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
+    let (Chosen(chosen), Many(structures)) = (&args.cases, &args.structures);
+    let cx = Context::new(args.machine, cancel);
+    let options = Options { seed: args.seed, rays: args.rays as usize, structures: structures.clone(), secs: args.secs };
+    let progress = Progress::new();
+    progress.start("cases", (chosen.len() * structures.len() * TestKind::ALL.len()) as u64);
+    let check = |case: &&'static Case| {
+        let build =
+            BuildCx { cancel: cx.cancel.clone(), progress: Progress::new(), pool: cx.pool.clone(), budget: cx.budget.clone() };
+        check_case(case, &options, &build, &|| progress.advance(1)).map_err(|reason| Failure::from(reason.of(case.id)))
+    };
+    let cases = bar::watch("stability", &progress, || chosen.iter().map(check).collect::<Result<Vec<_>, _>>())?;
+    let outcome = Outcome { seed: args.seed, machine: cx.machine(), cases };
+    if let Some(folder) = &args.output {
+        write(folder, &outcome, &options, &cx)?;
+    }
+    if args.json { print_json(&outcome) } else { print(&text(&outcome)) }?;
+    let failed = outcome.cases.iter().flat_map(|case| &case.structures).filter(|row| row.verdict == Verdict::Fail).count();
+    if failed == 0 { Ok(()) } else { Err(Failure::Other(anyhow::anyhow!("{failed} of the checks failed"))) }
+}
+
+/// Writes everything into the folder.
+fn write(folder: &Path, outcome: &Outcome, options: &Options, cx: &Context) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::of_output(folder, &error))?;
+    let report = serde_json::to_vec_pretty(outcome).map_err(|error| Failure::Other(error.into()))?;
+    OutFile::at(&folder.join("report.json"))?.write(&cx.cancel, |out| out.write_all(&report))?;
+    let svg = log_log(&[panel(outcome)]).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
+    OutFile::at(&folder.join("error-time.svg"))?.write(&cx.cancel, |out| out.write_all(svg.as_bytes()))?;
+    let failed = |case: &CaseRow| case.structures.iter().filter(|row| row.verdict == Verdict::Fail).cloned().collect::<Vec<_>>();
+    for case in &outcome.cases {
+        for row in failed(case) {
+            reproduce(folder, case.id, &row, options, cx)?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the smallest scene in which the first wrong ray of a row is still answered wrongly, and the ray.
+fn reproduce(folder: &Path, id: &str, row: &Row, options: &Options, cx: &Context) -> Result<(), Failure> {
+    let (Some(case), Some(entry), Some(wrong)) = (cases::find(id), registry::find(row.id), row.wrong.first()) else {
+        return Ok(());
+    };
+    let mut trial = case.trial(options.seed, options.rays);
+    trial.rays = vec![trial.rays[wrong.ray]];
+    let build =
+        || BuildCx { cancel: cx.cancel.clone(), progress: Progress::new(), pool: cx.pool.clone(), budget: cx.budget.clone() };
+    let name = format!("{id}-{}-{}", row.id, row.test.id());
+    let of = |reason: Reason| Failure::from(reason.of(id));
+    let fails = |trial: &Trial| Ok(check(trial, entry, row.test, &build())?.is_some());
+    // An answer that depends on the other rays of its batch does not show with one ray alone: then all is kept.
+    let smallest = || if fails(&trial)? { shrink(trial.clone(), &fails) } else { Ok(trial.clone()) };
+    let small = bar::watch(&format!("shrink {name}"), &Progress::new(), || smallest().map_err(of))?;
+    let obj = folder.join(format!("{name}.obj"));
+    OutFile::at(&obj)?.write(&cx.cancel, |out| write_obj(out, &small, &format!("{name}: {:?}", wrong.why)))?;
+    OutFile::at(&obj.with_extension("npy"))?.write(&cx.cancel, |out| npy::write_rays(&small.rays, out))
+}
+
+/// Loose triangles, each coordinate with as many digits as it takes to read it back.
+fn write_obj(out: &mut impl Write, trial: &Trial, what: &str) -> io::Result<()> {
+    writeln!(out, "# {what}")?;
+    for p in trial.triangles.iter().flatten() {
+        writeln!(out, "v {:?} {:?} {:?}", p.x, p.y, p.z)?;
+    }
+    (0..trial.triangles.len()).try_for_each(|i| writeln!(out, "f {} {} {}", 3 * i + 1, 3 * i + 2, 3 * i + 3))
+}
+
+/// Error against time: a curve for each structure, a point for each test, means over the cases.
+fn panel(outcome: &Outcome) -> Panel {
+    /// What an error of nothing counts as, since means are geometric.
+    const LEAST_ULPS: f64 = 0.01;
+    let rows = || outcome.cases.iter().flat_map(|case| &case.structures);
+    let mut ids: Vec<&str> = Vec::new();
+    for row in rows().filter(|row| row.error.is_none()) {
+        if !ids.contains(&row.id) {
+            ids.push(row.id);
+        }
+    }
+    let mean = |id: &str, test: TestKind, of: fn(&Row) -> f64| {
+        let logs: Vec<f64> = rows().filter(|row| row.id == id && row.test == test).map(|row| of(row).ln()).collect();
+        (logs.iter().sum::<f64>() / logs.len() as f64).exp()
+    };
+    let point = |id: &str, test| (mean(id, test, |row| row.ns_per_ray), mean(id, test, |row| row.p999_ulps.max(LEAST_ULPS)));
+    let order = [TestKind::Fast, TestKind::Watertight, TestKind::Exact];
+    let curve = |id: &&str| Curve { id: (*id).to_owned(), points: order.map(|test| point(id, test)).into() };
+    Panel {
+        title: "Error of t against time: fast, watertight, exact".to_owned(),
+        axes: ["nanoseconds of a ray, mean over cases", "ulps that one clear hit in a thousand exceeds"],
+        curves: ids.iter().map(curve).collect(),
+        guide: None,
+    }
+}
+
+fn text(outcome: &Outcome) -> String {
+    let head = facts(&[
+        ("seed", outcome.seed.to_string()),
+        ("machine", format!("{}, {} threads", outcome.machine.cpu, outcome.machine.threads)),
+    ]);
+    let mut table = Table::new(&[
+        "case",
+        "structure",
+        "test",
+        "rays",
+        "near",
+        "boundary",
+        "clear wrong",
+        "boundary wrong",
+        "max ulps",
+        "99.9 %",
+        "nodes",
+        "astray",
+        "ns/ray",
+        "verdict",
+    ]);
+    let mut notes = String::new();
+    for case in &outcome.cases {
+        for row in &case.structures {
+            table.row(cells(case, row));
+            if let Some(error) = &row.error {
+                notes += &format!("{}, {}: {error}\n", case.id, row.id);
+            }
+        }
+    }
+    format!("{head}\n{}{notes}{}", table.render(), LEGEND)
+}
+
+const LEGEND: &str = "\nnear: rays whose answer is a matter of rounding. boundary: rays through an edge or a corner, to the bit.\n\
+    clear wrong: another answer than the exact one where no rounding is in the way. boundary wrong: an answer that no rounding \
+    explains, or a ray that slipped through a closed surface.\n";
+
+fn cells(case: &CaseRow, row: &Row) -> Vec<String> {
+    let share = |n: usize| percent(n as f64 / row.rays.max(1) as f64);
+    let verdict = match row.verdict {
+        Verdict::Pass => "pass",
+        Verdict::Warn => "warn",
+        Verdict::Fail => "FAIL",
+    };
+    vec![
+        case.id.to_owned(),
+        row.id.to_owned(),
+        row.test.id().to_owned(),
+        count(row.rays as u64),
+        share(row.near),
+        share(row.boundary),
+        count(row.clear_wrong as u64),
+        count(row.boundary_wrong as u64),
+        number(row.max_ulps),
+        number(row.p999_ulps),
+        count(row.max_nodes),
+        count(row.astray),
+        number(row.ns_per_ray),
+        verdict.to_owned(),
+    ]
+}

@@ -1,0 +1,250 @@
+//! The test that is never wrong: signs are exact and t is correctly rounded, by a filter with exact arithmetic behind
+//! it (Shewchuk 1997; the predicates of a line and an edge as in Plücker coordinates).
+//!
+//! With `A`, `B`, `C` the corners seen from the ray's origin, and `d` its direction, the line passes the three edges on
+//! the sides that the signs of `d.(B x C)`, `d.(C x A)` and `d.(A x B)` say, and meets the plane at
+//! `t = A.(B x C) / (their sum)`. Three steps, each for what the one before could not decide:
+//!
+//! 1. Eight triangles in 32 bits. A corner is moved and sheared as in the watertight test, but multiplied by `d_z`
+//!    instead of divided, which displaces it by at most `r = 6uD` (u the unit roundoff, D the greatest distance from the
+//!    origin to the scene in any component; see [`crate::geometry::slabs`]). With `m` the greatest coordinate of the
+//!    three, an edge function of products is off by at most `4rm + 2r^2` for the displacements and `4u m^2 < 2rm` for its
+//!    own roundings (`m < 2D`), so a sign is certain beyond `8r(m + r)`. Two certain signs that differ: a miss.
+//! 2. In 64 bits, with u = 2^-53: differences of 32-bit numbers, two products and three sums make at most nine
+//!    roundings in each of six terms, so `d.(B x C)` is off by at most `64u |d| |B| |C|`, greatest components taken.
+//! 3. Exactly: [`Expansion`].
+//!
+//! A ray through an edge or a corner, to the bit, hits all triangles that share it, at the same t. A ray in a
+//! triangle's plane misses it.
+
+use super::watertight::{AXES, in_order, order_of};
+use super::{Hits, Meets, Own, TestKind, TriHit, TriTest};
+use crate::geometry::eight::{Points, Rays};
+use crate::geometry::expansion::Expansion;
+use crate::geometry::num::narrow;
+use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
+use crate::simd::Simd;
+use glam::Vec3;
+
+/// See above.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact {
+    origin: Vec3,
+    dir: Vec3,
+    /// The order of the axes in the first step: see [`AXES`].
+    axes: u32,
+    slabs: Slabs,
+}
+
+/// Eight times the displacement, of the widths of the slabs: those are at least `24uD`, less what rounding took.
+const DISPLACED: f32 = 2.25;
+
+impl TriTest for Exact {
+    const KIND: TestKind = TestKind::Exact;
+
+    #[inline(always)]
+    fn prepare(ray: &Ray, bounds: &Aabb) -> Self {
+        Self { origin: ray.origin, dir: ray.dir, axes: order_of(ray.dir), slabs: Slabs::new(ray, bounds) }
+    }
+
+    #[inline(always)]
+    fn slabs(&self) -> &Slabs {
+        &self.slabs
+    }
+
+    #[inline(always)]
+    fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
+        if self.surely_misses(tri) { None } else { meet(self.origin, self.dir, tri) }
+    }
+
+    /// The interval of the triangle's box holds every exact t, and what that is rounded to: boxes are wider than any
+    /// rounding. So nothing is asked about it.
+    #[inline(always)]
+    fn hit(&self, tri: &[Vec3; 3], tmin: f32, tmax: f32) -> Option<TriHit> {
+        if self.surely_misses(tri) { None } else { self.hit_in_doubt(tri, tmin, tmax) }
+    }
+
+    #[inline(always)]
+    fn hit_in_doubt(&self, tri: &[Vec3; 3], tmin: f32, tmax: f32) -> Option<TriHit> {
+        meet(self.origin, self.dir, tri).filter(|hit| tmin <= hit.t && hit.t <= tmax)
+    }
+
+    #[inline(always)]
+    fn axes(&self) -> [usize; 3] {
+        AXES[self.axes as usize % 8]
+    }
+
+    /// None is met for certain; those that are not missed for certain are in doubt.
+    #[inline(always)]
+    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, slabs: &EightSlabs<S::F>, [a, b, c]: &[Points<S::F>; 3]) -> Meets<S> {
+        let (a, b, c) = (seen(s, own, *a), seen(s, own, *b), seen(s, own, *c));
+        let u = s.sub(s.mul(c[0], b[1]), s.mul(c[1], b[0]));
+        let v = s.sub(s.mul(a[0], c[1]), s.mul(a[1], c[0]));
+        let w = s.sub(s.mul(b[0], a[1]), s.mul(b[1], a[0]));
+        let (least, greatest) = (s.min(s.min(u, v), w), s.max(s.max(u, v), w));
+        let x = s.max(s.max(s.abs(a[0]), s.abs(b[0])), s.abs(c[0]));
+        let y = s.max(s.max(s.abs(a[1]), s.abs(b[1])), s.abs(c[1]));
+        let displaced = s.mul(s.splat(DISPLACED), s.sub(slabs.o_lo.x, slabs.o_hi.x));
+        let bound = s.mul(displaced, s.add(s.max(x, y), displaced));
+        let zero = s.splat(0.0);
+        let doubt = s.or(s.le(s.sub(zero, bound), least), s.le(greatest, bound));
+        Meets { met: s.lt(zero, zero), doubt: Some(doubt), t: zero, u: zero, v: zero }
+    }
+
+    /// As none is met for certain, nothing has to be asked about boxes yet.
+    #[inline(always)]
+    fn hit_eight<S: Simd>(s: S, own: &Own<S::F>, slabs: &EightSlabs<S::F>, _: [S::F; 2], corners: &[Points<S::F>; 3]) -> Hits<S> {
+        let meets = Self::meet_eight(s, own, slabs, corners);
+        Hits { hit: meets.met, doubt: meets.doubt(s), t: meets.t, u: meets.u, v: meets.v }
+    }
+
+    #[inline(always)]
+    fn own(&self) -> Own<f32> {
+        let ([x, y, z], o, d) = (self.axes(), self.origin, self.dir);
+        [o[x], o[y], o[z], d[x], d[y], d[z], f32::from_bits(self.axes)]
+    }
+
+    #[inline(always)]
+    fn own_of_eight<S: Simd>(s: S, rays: &Rays<S::F>) -> Own<S::F> {
+        let (o, d, axes) = in_order(s, rays);
+        [o.x, o.y, o.z, d.x, d.y, d.z, axes]
+    }
+
+    #[inline(always)]
+    fn from_own(own: &Own<f32>, slabs: Slabs) -> Self {
+        let axes = own[6].to_bits();
+        let (mut origin, mut dir) = (Vec3::ZERO, Vec3::ZERO);
+        for (i, axis) in AXES[axes as usize % 8].into_iter().enumerate() {
+            (origin[axis], dir[axis]) = (own[i], own[3 + i]);
+        }
+        Self { origin, dir, axes, slabs }
+    }
+}
+
+/// Where eight corners are beside the ray, as [`Exact::surely_misses`] has it.
+#[inline(always)]
+fn seen<S: Simd>(s: S, own: &Own<S::F>, p: Points<S::F>) -> [S::F; 2] {
+    let &[ox, oy, oz, dx, dy, dz, _] = own;
+    let p = p.minus(s, Points { x: ox, y: oy, z: oz });
+    [s.sub(s.mul(p.x, dz), s.mul(dx, p.z)), s.sub(s.mul(p.y, dz), s.mul(dy, p.z))]
+}
+
+impl Exact {
+    /// The first step.
+    #[inline(always)]
+    fn surely_misses(&self, tri: &[Vec3; 3]) -> bool {
+        let ([x, y, z], d) = (self.axes(), self.dir);
+        let [a, b, c] = tri.map(|p| {
+            let p = p - self.origin;
+            [p[x] * d[z] - d[x] * p[z], p[y] * d[z] - d[y] * p[z]]
+        });
+        let u = c[0] * b[1] - c[1] * b[0];
+        let v = a[0] * c[1] - a[1] * c[0];
+        let w = b[0] * a[1] - b[1] * a[0];
+        let greatest = |of: [f32; 3]| max(max(of[0], of[1]), of[2]);
+        let m = max(greatest([a[0], b[0], c[0]].map(f32::abs)), greatest([a[1], b[1], c[1]].map(f32::abs)));
+        let displaced = DISPLACED * self.slabs.width_of_x();
+        let bound = displaced * (m + displaced);
+        -greatest([-u, -v, -w]) < -bound && bound < greatest([u, v, w])
+    }
+}
+
+#[inline(always)]
+fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The bound of the second step, of the product of the three greatest components.
+const BOUND: f64 = 64.0 * (f64::EPSILON / 2.0);
+
+/// The second and the third step.
+#[inline(never)]
+fn meet(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> Option<TriHit> {
+    let (o, d) = (origin.as_dvec3(), dir.as_dvec3());
+    let [a, b, c] = tri.map(|p| p.as_dvec3() - o);
+    let of_bc = b.cross(c);
+    let (u, v, w) = (d.dot(of_bc), d.dot(c.cross(a)), d.dot(a.cross(b)));
+    let [of_a, of_b, of_c] = [a, b, c].map(|p| p.abs().max_element());
+    let bound = BOUND * d.abs().max_element();
+    let bounds = [bound * of_b * of_c, bound * of_c * of_a, bound * of_a * of_b];
+    let certain = |value: f64, bound: f64| value.abs() > bound;
+    let signs = if certain(u, bounds[0]) && certain(v, bounds[1]) && certain(w, bounds[2]) {
+        [u, v, w]
+    } else {
+        let exactly = |[p, q]: [Vec3; 2]| side(origin, dir, p, q).sign();
+        let [a, b, c] = *tri;
+        [[b, c], [c, a], [a, b]].map(exactly)
+    };
+    let (least, greatest) = (signs[0].min(signs[1]).min(signs[2]), signs[0].max(signs[1]).max(signs[2]));
+    if least < 0.0 && greatest > 0.0 || (least == 0.0 && greatest == 0.0) {
+        return None;
+    }
+    let (above, below) = (a.dot(of_bc), u + v + w);
+    // The sum of the three, whose signs do not differ by more than their bounds, is rounded twice.
+    let of_below = bounds[0] + bounds[1] + bounds[2] + 2.0 * f64::EPSILON * (u.abs() + v.abs() + w.abs());
+    let t = of_quotient([above, BOUND * of_a * of_b * of_c], [below, of_below]).unwrap_or_else(|| exact_t(origin, dir, tri));
+    // Of a sliver seen edge on 64 bits may not even know the sign.
+    let weight = |x: f64| narrow((x / below).clamp(0.0, 1.0));
+    let (u, v) = if below.abs() > of_below { (weight(v), weight(w)) } else { (1.0 / 3.0, 1.0 / 3.0) };
+    t.is_finite().then_some(TriHit { t, u, v })
+}
+
+/// The quotient of two numbers with an error each, correctly rounded, if that is certain.
+#[inline(always)]
+fn of_quotient([above, of_above]: [f64; 2], [below, of_below]: [f64; 2]) -> Option<f32> {
+    if below.abs() <= 2.0 * of_below {
+        return None;
+    }
+    let t = above / below;
+    // Twice the first order covers the higher ones, as the divisor is at least half of what it seems.
+    let error = 2.0 * (of_above + t.abs() * of_below) / below.abs() + f64::EPSILON * t.abs();
+    let (low, high) = (narrow(t - error), narrow(t + error));
+    (low == high).then_some(low)
+}
+
+/// `d.((p - o) x (q - o))`.
+fn side(o: Vec3, d: Vec3, p: Vec3, q: Vec3) -> Expansion<36> {
+    let [o, d, p, q] = [o, d, p, q].map(|v| v.as_dvec3().to_array());
+    let mut sum = Expansion::zero();
+    sum.add_determinant(1.0, [d, p, q]);
+    sum.add_determinant(-1.0, [d, o, q]);
+    sum.add_determinant(-1.0, [d, p, o]);
+    sum
+}
+
+/// The t of the plane, correctly rounded. The triangle is not seen edge on.
+#[cold]
+fn exact_t(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> f32 {
+    let [o, d, a, b, c] = [origin, dir, tri[0], tri[1], tri[2]].map(|v| v.as_dvec3().to_array());
+    let (mut above, mut below) = (Expansion::<48>::zero(), Expansion::<36>::zero());
+    above.add_determinant(1.0, [a, b, c]);
+    above.add_determinant(-1.0, [o, b, c]);
+    above.add_determinant(-1.0, [a, o, c]);
+    above.add_determinant(-1.0, [a, b, o]);
+    below.add_determinant(1.0, [d, b, c]);
+    below.add_determinant(-1.0, [d, b, a]);
+    below.add_determinant(-1.0, [d, a, c]);
+    let t = above.estimate() / below.estimate();
+    let error = 16.0 * f64::EPSILON * t.abs();
+    let (low, high) = (narrow(t - error), narrow(t + error));
+    if low == high {
+        return low;
+    }
+    // Two neighbours: which side of the middle between them is it on?
+    let end = |x: f32| if x.is_finite() { f64::from(x) } else { TOO_LARGE.copysign(f64::from(x)) };
+    let middle = 0.5 * (end(low) + end(high));
+    let mut beyond = Expansion::<120>::zero();
+    for part in above.parts() {
+        beyond.add(*part);
+    }
+    beyond.add_scaled(&below, -middle);
+    match beyond.sign() * below.sign() {
+        side if side > 0.0 => high,
+        side if side < 0.0 => low,
+        _ if low.to_bits() & 1 == 0 => low,
+        _ => high,
+    }
+}
+
+/// What stands for infinity where 32-bit numbers are rounded: one step beyond the greatest.
+const TOO_LARGE: f64 = (1u128 << 127) as f64 * 2.0;
