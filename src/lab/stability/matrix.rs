@@ -69,7 +69,7 @@ pub struct Row {
     pub p999_ulps: f64,
     /// The most nodes that a ray entered.
     pub max_nodes: u64,
-    /// Nodes entered that should not have been, or the other way round; see [`super::visits`].
+    /// Nodes entered that should not have been, or the other way round: see docs/stability.md.
     pub astray: u64,
     /// On one thread, in batches.
     pub ns_per_ray: f64,
