@@ -28,7 +28,7 @@ fn no_structure_is_wrong_on_any_case() {
             assert_ne!(row.verdict, Verdict::Fail, "{}: {row:?}", case.id);
             assert!(row.rays > 0 && row.max_nodes > 0 || case.id == "few-0", "{}: {row:?}", case.id);
             if row.test == TestKind::Exact {
-                assert!(row.max_ulps <= 0.5 && row.near == 0, "{}: {row:?}", case.id);
+                assert!(row.max_ulps < 0.5001 && row.near == 0, "{}: {row:?}", case.id);
             }
             if row.id == "brute" && row.test == TestKind::Watertight {
                 (rays, near, boundary) = (rays + row.rays, near + row.near, boundary + row.boundary);
@@ -37,7 +37,7 @@ fn no_structure_is_wrong_on_any_case() {
         }
     }
     println!("{rays} rays, {near} near, {boundary} through edges, {slipped} slipped through in fast");
-    assert!(2 * near < 3 * rays, "a lab in which rounding explains everything proves nothing");
+    assert!(3 * near < 2 * rays, "a lab in which rounding explains everything proves nothing");
     assert!(boundary > rays / 20 && slipped > 0, "{boundary} of {rays} through edges, {slipped} slipped");
 }
 
