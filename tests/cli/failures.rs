@@ -27,7 +27,7 @@ fn bad_arguments_are_explained() {
         (&["stats", "builtin:lecture"], "--structure"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "bins=1"], "a whole number from 2"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--set", "leaves=1"], "there is builder"),
-        (&["stats", "builtin:lecture", "--structure", "bvh", "--test", "slow"], "watertight or fast"),
+        (&["stats", "builtin:lecture", "--structure", "bvh", "--test", "slow"], "watertight, fast or exact"),
         (&["compare", "builtin:lecture", "--rays", "gamma"], "primary, shadow, diffuse, lines or shuffled"),
         (&["stats", "builtin:lecture", "--structure", "bvh", "--alpha", "1.5"], "from 0 to 1"),
         (&["scaling", "builtin:soup", "--from", "1000", "--to", "500"], "two sizes"),
