@@ -12,6 +12,8 @@ use crate::task::Cancelled;
 
 /// References for each triangle that a level of a grid may make, about.
 const MOST: f64 = 64.0;
+/// Triangles in more coarse cells than this, on average, reach across the cells.
+const LARGE: f64 = 8.0;
 /// Triangles looked at to find out how many they are.
 const SAMPLE: usize = 1024;
 /// Cells summed up between two looks at the cancel flag.
@@ -59,6 +61,10 @@ pub fn cuts(counts: &[AtomicU32], density: f64, triangles: usize, cx: &BuildCx) 
             coarse += refs;
             cut += refs * (density * refs).max(1.0).powf(2.0 / 3.0);
         }
+    }
+    // Triangles in few coarse cells are small, and in few of their cuts.
+    if coarse <= LARGE * triangles as f64 {
+        return Ok(1.0);
     }
     Ok(share(cut, f64::max(MOST * triangles as f64, 2.0 * coarse)))
 }
