@@ -67,7 +67,7 @@ fn boxes_can_be_switched_off() {
 
 #[test]
 fn a_grid_shows_its_cells_and_has_no_depth() {
-    let mut w = Window::lecture();
+    let mut w = Window::with_model("builtin:teapot");
     w.button("Grid");
     w.settle();
     assert!(!w.has(Role::Slider, "Depth"));
