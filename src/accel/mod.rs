@@ -46,8 +46,9 @@ pub trait Structure: Cells + Sized + 'static {
     /// the lowest primitive; any accepted hit where that will do.
     fn trace_one<Q: Query, P: Probe>(&self, ray: &Ray, query: &Q, probe: &mut P) -> Option<PrimHit>;
 
-    /// The same for a ray that is watched and may be given up. The default looks at `cancel` once; a
-    /// structure for which one ray can take long looks more often.
+    /// The same for a ray that may be given up. The default looks at `cancel` once; a structure for which one ray can
+    /// take long looks more often.
+    #[inline]
     fn trace_stoppable<Q: Query, P: Probe>(
         &self,
         ray: &Ray,
@@ -59,8 +60,7 @@ pub trait Structure: Cells + Sized + 'static {
         Ok(self.trace_one(ray, query, probe))
     }
 
-    /// Traces world rays into `hits` of the same length. The default traces them one by one; a
-    /// structure for which one ray can take long looks at `cancel` more often.
+    /// Traces world rays into `hits` of the same length. The default traces them one by one.
     fn trace_batch<Q: Query>(
         &self,
         rays: &[Ray],
@@ -69,7 +69,7 @@ pub trait Structure: Cells + Sized + 'static {
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
         let mut off = Off::best();
-        one_by_one(self.geometry(), rays, hits, cancel, |ray| self.trace_one(ray, query, &mut off))
+        one_by_one(self.geometry(), rays, hits, |ray| self.trace_stoppable(ray, query, &mut off, cancel))
     }
 
     /// The same one ray at a time, without instructions that not every processor has: the terms on which
@@ -81,12 +81,9 @@ pub trait Structure: Cells + Sized + 'static {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        one_by_one(self.geometry(), rays, hits, cancel, |ray| self.trace_one(ray, query, &mut Off::plain()))
+        one_by_one(self.geometry(), rays, hits, |ray| self.trace_stoppable(ray, query, &mut Off::plain(), cancel))
     }
 }
-
-/// Rays traced between two looks at the cancel flag: well under a millisecond for any tree.
-const RAYS_PER_CHECK: usize = 64;
 
 /// What a batch has to say besides its hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -197,15 +194,11 @@ fn one_by_one(
     geometry: &Geometry,
     rays: &[Ray],
     hits: &mut [Option<Hit>],
-    cancel: &Cancel,
-    mut trace: impl FnMut(&Ray) -> Option<PrimHit>,
+    mut trace: impl FnMut(&Ray) -> Result<Option<PrimHit>, Cancelled>,
 ) -> Result<Traced, Cancelled> {
     let mut traced = Traced::default();
-    for (rays, hits) in rays.chunks(RAYS_PER_CHECK).zip(hits.chunks_mut(RAYS_PER_CHECK)) {
-        cancel.check()?;
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = in_scaled_space(geometry, ray, &mut traced, |ray| Ok(trace(ray)))?;
-        }
+    for (ray, hit) in rays.iter().zip(hits) {
+        *hit = in_scaled_space(geometry, ray, &mut traced, &mut trace)?;
     }
     Ok(traced)
 }

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use super::best::Best;
 use super::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape};
-use super::probe::{Off, Probe};
-use super::{BuildCx, BuildError, Hit, PrimHit, Query, Structure, Traced, in_scaled_space};
+use super::probe::Probe;
+use super::{BuildCx, BuildError, PrimHit, Query, Structure};
 use crate::geometry::Ray;
 use crate::geometry::num;
 use crate::geometry::tri::{self, Block, Eight, TriTest};
@@ -126,31 +126,6 @@ impl<T: TriTest, const BOUND: bool> Structure for Brute<T, BOUND> {
         cancel: &Cancel,
     ) -> Result<Option<PrimHit>, Cancelled> {
         self.trace_with_checks(ray, query, probe, || cancel.check())
-    }
-
-    fn trace_batch<Q: Query>(
-        &self,
-        rays: &[Ray],
-        query: &Q,
-        hits: &mut [Option<Hit>],
-        cancel: &Cancel,
-    ) -> Result<Traced, Cancelled> {
-        let mut traced = Traced::default();
-        for (ray, hit) in rays.iter().zip(hits) {
-            let local = |ray: &Ray| self.trace_with_checks(ray, query, &mut Off::plain(), || cancel.check());
-            *hit = in_scaled_space(&self.geometry, ray, &mut traced, local)?;
-        }
-        Ok(traced)
-    }
-
-    fn trace_plain<Q: Query>(
-        &self,
-        rays: &[Ray],
-        query: &Q,
-        hits: &mut [Option<Hit>],
-        cancel: &Cancel,
-    ) -> Result<Traced, Cancelled> {
-        self.trace_batch(rays, query, hits, cancel)
     }
 }
 

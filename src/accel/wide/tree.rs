@@ -146,12 +146,12 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
             return Ok(traced);
         }
         if self.root == Child::NONE {
-            return one_by_one(&self.geometry, rays, hits, cancel, |_| None);
+            return one_by_one(&self.geometry, rays, hits, |_| cancel.check().map(|()| None));
         }
         with_under_way(|under_way| match self.road.run_wide(Batch { tree: self, rays, query, hits, cancel, under_way }) {
             Ok(traced) => traced,
             Err(Batch { hits, .. }) => {
-                one_by_one(&self.geometry, rays, hits, cancel, |ray| self.plainly(ray, query, &mut Off::plain()))
+                one_by_one(&self.geometry, rays, hits, |ray| cancel.check().map(|()| self.plainly(ray, query, &mut Off::plain())))
             }
         })
     }
@@ -163,7 +163,7 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        one_by_one(&self.geometry, rays, hits, cancel, |ray| self.plainly(ray, query, &mut Off::plain()))
+        one_by_one(&self.geometry, rays, hits, |ray| cancel.check().map(|()| self.plainly(ray, query, &mut Off::plain())))
     }
 }
 
