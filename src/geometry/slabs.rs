@@ -39,7 +39,8 @@ pub struct Along {
 }
 
 impl Along {
-    /// As [`Slabs::plane`].
+    /// The earliest and latest t at which the ray may meet the plane at `pos`, by the same formula and with the same
+    /// widening as the faces of a box.
     #[inline(always)]
     pub fn plane(&self, pos: f32) -> (f32, f32) {
         let (a, b) = ((pos - self.o_lo) * self.inv, (pos - self.o_hi) * self.inv);
@@ -117,23 +118,10 @@ impl Slabs {
         (entry, exit)
     }
 
-    /// The earliest and latest t at which the ray may meet the plane `axis = pos`, by the same
-    /// formula and with the same widening as the faces of a box.
-    #[inline(always)]
-    pub fn plane(&self, axis: usize, pos: f32) -> (f32, f32) {
-        self.along(axis).plane(pos)
-    }
-
     /// What is needed of one axis.
     #[inline(always)]
     pub fn along(&self, axis: usize) -> Along {
         Along { o_lo: self.o_lo[axis], o_hi: self.o_hi[axis], inv: self.inv[axis] }
-    }
-
-    /// Whether the ray runs towards smaller values on the axis.
-    #[inline(always)]
-    pub fn backward(&self, axis: usize) -> bool {
-        self.inv[axis] < 0.0
     }
 
     /// One bit for each axis on which the ray does not run towards smaller values.
