@@ -211,7 +211,7 @@ impl Beam {
                 continue;
             }
             let interval = [s.load(&self.tmins), s.load(&self.ends)];
-            let hits = meets.inside(s, &slabs, interval, &corner);
+            let hits = T::inside(s, &meets, &slabs, interval, &corner);
             if self.keep::<S, T, B, Q>(s, &hits, (block, points), lane, query) {
                 any = true;
                 // Rays that are done end before they begin.

@@ -84,7 +84,7 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
                 let meets = T::meet_eight(s, &own, &in_order, &corners);
                 meets.any(s) && {
                     let interval = [s.splat(best.tmin()), s.splat(best.t())];
-                    found.keep(s, &meets.inside(s, &in_order, interval, &corners), block.lanes());
+                    found.keep(s, &T::inside(s, &meets, &in_order, interval, &corners), block.lanes());
                     found.settle(&test, (block, points), query, &mut best, probe)
                 }
             };

@@ -93,8 +93,7 @@ impl TriTest for Exact {
 
     /// As none is met for certain, nothing has to be asked about boxes yet.
     #[inline(always)]
-    fn hit_eight<S: Simd>(s: S, own: &Own<S::F>, slabs: &EightSlabs<S::F>, _: [S::F; 2], corners: &[Points<S::F>; 3]) -> Hits<S> {
-        let meets = Self::meet_eight(s, own, slabs, corners);
+    fn inside<S: Simd>(s: S, meets: &Meets<S>, _: &EightSlabs<S::F>, _: [S::F; 2], _: &[Points<S::F>; 3]) -> Hits<S> {
         Hits { hit: meets.met, doubt: meets.doubt(s), t: meets.t, u: meets.u, v: meets.v }
     }
 

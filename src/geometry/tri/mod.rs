@@ -101,7 +101,19 @@ pub trait TriTest: Copy + Send + Sync + 'static {
         interval: [S::F; 2],
         corners: &[Points<S::F>; 3],
     ) -> Hits<S> {
-        Self::meet_eight(s, own, slabs, corners).inside(s, slabs, interval, corners)
+        Self::inside(s, &Self::meet_eight(s, own, slabs, corners), slabs, interval, corners)
+    }
+
+    /// Of those that are met the ones that are hit.
+    #[inline(always)]
+    fn inside<S: Simd>(
+        s: S,
+        meets: &Meets<S>,
+        slabs: &EightSlabs<S::F>,
+        interval: [S::F; 2],
+        corners: &[Points<S::F>; 3],
+    ) -> Hits<S> {
+        meets.inside(s, slabs, interval, corners)
     }
 
     /// The whole test of a triangle that the look at eight left in doubt.
@@ -143,9 +155,9 @@ impl<S: Simd> Meets<S> {
         s.bits(self.met) | self.doubt(s) != 0
     }
 
-    /// Those that are hit: see [`TriTest::hit_eight`].
+    /// Those that are hit: see [`TriTest::inside`].
     #[inline(always)]
-    pub fn inside(&self, s: S, slabs: &EightSlabs<S::F>, interval: [S::F; 2], corners: &[Points<S::F>; 3]) -> Hits<S> {
+    fn inside(&self, s: S, slabs: &EightSlabs<S::F>, interval: [S::F; 2], corners: &[Points<S::F>; 3]) -> Hits<S> {
         let (entry, exit) = slabs.intervals(s, &boxes_of(s, corners));
         // An empty interval holds no t.
         let t = s.min(exit, s.max(entry, self.t));
