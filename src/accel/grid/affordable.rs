@@ -51,20 +51,24 @@ pub fn lattice(geometry: &Geometry, density: f64, cx: &BuildCx) -> Result<(Latti
     Ok((fewer, Some(remark)))
 }
 
-/// The share of the density that the cells of a coarse grid can be cut with.
-pub fn cuts(counts: &[AtomicU32], density: f64, triangles: usize, cx: &BuildCx) -> Result<f64, Cancelled> {
-    let (mut coarse, mut cut) = (0.0, 0.0);
-    for chunk in counts.chunks(CHUNK) {
-        cx.cancel.check()?;
-        for count in chunk {
-            let refs = f64::from(count.load(Ordering::Relaxed));
-            coarse += refs;
-            cut += refs * (density * refs).max(1.0).powf(2.0 / 3.0);
-        }
-    }
+/// The density that the cells of a coarse grid can be cut with, and what is to be said of it.
+pub fn cuts(counts: &[AtomicU32], density: f64, triangles: usize, cx: &BuildCx) -> Result<(f64, Option<String>), Cancelled> {
+    let coarse = sum(counts, cx, |refs| refs)?;
+    let each = coarse / triangles.max(1) as f64;
     // Triangles in few coarse cells are small, and in few of their cuts.
-    if coarse <= LARGE * triangles as f64 {
-        return Ok(1.0);
+    if each <= LARGE {
+        return Ok((density, None));
     }
-    Ok(share(cut, f64::max(MOST * triangles as f64, 2.0 * coarse)))
+    let cut = sum(counts, cx, |refs| refs * (density * refs).max(1.0).powf(2.0 / 3.0))?;
+    let share = share(cut, f64::max(MOST * triangles as f64, 2.0 * coarse));
+    let remark = format!("Coarse cells are cut less finely, as a triangle is in {each:.0} of them.");
+    Ok((density * share, (share < 1.0).then_some(remark)))
+}
+
+/// The sum over all cells of what their references come to.
+fn sum(counts: &[AtomicU32], cx: &BuildCx, of: impl Fn(f64) -> f64) -> Result<f64, Cancelled> {
+    let chunk = |chunk: &[AtomicU32]| {
+        cx.cancel.check().map(|()| chunk.iter().map(|count| of(f64::from(count.load(Ordering::Relaxed)))).sum::<f64>())
+    };
+    counts.chunks(CHUNK).map(chunk).sum()
 }

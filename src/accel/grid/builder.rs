@@ -20,5 +20,5 @@ pub fn build(geometry: &Arc<Geometry>, density: f64, cx: &BuildCx) -> Result<Bui
     let (lattice, remark) = affordable::lattice(geometry, density, cx)?;
     let cells = REFUSAL.numbered(lattice.count() as u64, "cells")?;
     let contents = Contents::sort(geometry, cells, &lattice, &REFUSAL, cx)?;
-    Ok(Built { geometry: Arc::clone(geometry), lattice, contents, remark })
+    Ok(Built { geometry: Arc::clone(geometry), lattice, contents, remarks: remark.into_iter().collect() })
 }

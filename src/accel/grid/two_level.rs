@@ -72,7 +72,7 @@ pub struct Built {
     /// The references of each.
     pub contents: Contents,
     /// What the builder decided, in words.
-    pub remark: Option<String>,
+    pub remarks: Vec<String>,
     /// The memory of the coarse cells.
     pub _charge: Charge,
 }
@@ -203,7 +203,7 @@ impl<T: TriTest> Cells for TwoLevel<T> {
     }
 
     fn remarks(&self) -> Vec<String> {
-        self.built.remark.iter().cloned().collect()
+        self.built.remarks.clone()
     }
 
     fn memory(&self) -> Vec<MemoryPart> {

@@ -44,11 +44,11 @@ pub fn build(geometry: &Arc<Geometry>, densities: Densities, cx: &BuildCx) -> Re
     let (kept, counting) = (charge(tops * size_of::<Top>())?, charge(tops * size_of::<u32>())?);
     cx.progress.start("count coarse", geometry.live_count() as u64);
     let counts = counts(geometry, tops, &lattice, cx)?;
-    let leaf = densities.leaf * affordable::cuts(&counts, densities.leaf, geometry.live_count(), cx)?;
+    let (leaf, less) = affordable::cuts(&counts, densities.leaf, geometry.live_count(), cx)?;
     let (cuts, cells) = cut(lattice, counts, leaf, cx)?;
     drop(counting);
     let contents = Contents::sort(geometry, cells, &cuts, &REFUSAL, cx)?;
-    Ok(Built { geometry: Arc::clone(geometry), cuts, contents, remark, _charge: kept })
+    Ok(Built { geometry: Arc::clone(geometry), cuts, contents, remarks: remark.into_iter().chain(less).collect(), _charge: kept })
 }
 
 /// Cuts each cell of the coarse grid, and says how many cells that makes.

@@ -25,7 +25,7 @@ pub struct Built {
     /// The references of each.
     pub contents: Contents,
     /// What the builder decided, in words.
-    pub remark: Option<String>,
+    pub remarks: Vec<String>,
 }
 
 /// A uniform grid traced with the triangle test `T`.
@@ -98,7 +98,7 @@ impl<T: TriTest> Cells for Grid<T> {
     }
 
     fn remarks(&self) -> Vec<String> {
-        self.built.remark.iter().cloned().collect()
+        self.built.remarks.clone()
     }
 
     fn memory(&self) -> Vec<MemoryPart> {
