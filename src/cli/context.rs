@@ -52,14 +52,14 @@ impl Context {
         LoadCx { cancel: self.cancel.clone(), progress: Progress::new(), budget: self.budget.clone(), pool: self.pool.clone() }
     }
 
+    /// What building takes.
+    pub fn build_cx(&self) -> BuildCx {
+        BuildCx { cancel: self.cancel.clone(), progress: Progress::new(), pool: self.pool.clone(), budget: self.budget.clone() }
+    }
+
     /// Builds a structure.
     pub fn build(&self, entry: &Entry, model: &Model, test: TestKind, params: &ParamValues) -> Result<BuiltRow, BuildError> {
-        let cx = BuildCx {
-            cancel: self.cancel.clone(),
-            progress: Progress::new(),
-            pool: self.pool.clone(),
-            budget: self.budget.clone(),
-        };
+        let cx = self.build_cx();
         let title = format!("build {}", entry.id);
         bar::watch(&title, &cx.progress, || build_timed(entry, &model.geometry, test, params, &cx))
     }

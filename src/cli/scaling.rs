@@ -14,7 +14,7 @@ use super::plot::{Curve, Panel, log_log};
 use super::structures::{BuildArgs, Many};
 use super::table::{Table, facts};
 use super::{bar, rays};
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::BuildError;
 use crate::geometry::num::floor_index;
 use crate::geometry::tri::TestKind;
 use crate::lab::format::{MISSING, count, duration, number};
@@ -88,8 +88,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let (geometries, largest) = models(args, &cx)?;
     let camera = CameraSpec::or_first(None, &largest.scene, &largest.geometry, args.size.aspect());
     let (set, _memory) = rays::generate(args.rays, &largest, camera, rays::finder(&largest, &cx)?, args.size, &cx)?;
-    let build_cx =
-        BuildCx { cancel: cx.cancel.clone(), progress: Progress::new(), pool: cx.pool.clone(), budget: cx.budget.clone() };
+    let build_cx = cx.build_cx();
     let rounds = BuildRounds { rounds: args.repeat as usize, secs: args.secs };
     let options =
         MeasureOptions { min_rounds: args.repeat as usize, min_secs: args.secs, cap_secs: args.cap, ..MeasureOptions::default() };

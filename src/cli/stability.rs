@@ -15,7 +15,7 @@ use super::output::{OutFile, print, print_json};
 use super::plot::{Curve, Panel, log_log};
 use super::structures::Many;
 use super::table::{Table, facts};
-use crate::accel::{BuildCx, registry};
+use crate::accel::registry;
 use crate::geometry::tri::TestKind;
 use crate::lab::MachineFacts;
 use crate::lab::format::{count, number, percent};
@@ -80,13 +80,15 @@ struct Outcome {
 pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let (Chosen(chosen), Many(structures)) = (&args.cases, &args.structures);
     let cx = Context::new(args.machine, cancel);
+    // What can't be written to is told before the long work.
+    if let Some(folder) = &args.output {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::of_output(folder, &error))?;
+    }
     let options = Options { seed: args.seed, rays: args.rays as usize, structures: structures.clone(), secs: args.secs };
     let progress = Progress::new();
     progress.start("cases", (chosen.len() * structures.len() * TestKind::ALL.len()) as u64);
     let check = |case: &&'static Case| {
-        let build =
-            BuildCx { cancel: cx.cancel.clone(), progress: Progress::new(), pool: cx.pool.clone(), budget: cx.budget.clone() };
-        check_case(case, &options, &build, &|| progress.advance(1)).map_err(|reason| Failure::from(reason.of(case.id)))
+        check_case(case, &options, &cx.build_cx(), &|| progress.advance(1)).map_err(|reason| Failure::from(reason.of(case.id)))
     };
     let cases = bar::watch("stability", &progress, || chosen.iter().map(check).collect::<Result<Vec<_>, _>>())?;
     let outcome = Outcome { seed: args.seed, machine: cx.machine(), cases };
@@ -100,15 +102,13 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 
 /// Writes everything into the folder.
 fn write(folder: &Path, outcome: &Outcome, options: &Options, cx: &Context) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| Failure::of_output(folder, &error))?;
     let report = serde_json::to_vec_pretty(outcome).map_err(|error| Failure::Other(error.into()))?;
     OutFile::at(&folder.join("report.json"))?.write(&cx.cancel, |out| out.write_all(&report))?;
     let svg = log_log(&[panel(outcome)]).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
     OutFile::at(&folder.join("error-time.svg"))?.write(&cx.cancel, |out| out.write_all(svg.as_bytes()))?;
-    let failed = |case: &CaseRow| case.structures.iter().filter(|row| row.verdict == Verdict::Fail).cloned().collect::<Vec<_>>();
     for case in &outcome.cases {
-        for row in failed(case) {
-            reproduce(folder, case.id, &row, options, cx)?;
+        for row in case.structures.iter().filter(|row| row.verdict == Verdict::Fail) {
+            reproduce(folder, case.id, row, options, cx)?;
         }
     }
     Ok(())
@@ -121,11 +121,9 @@ fn reproduce(folder: &Path, id: &str, row: &Row, options: &Options, cx: &Context
     };
     let mut trial = case.trial(options.seed, options.rays);
     trial.rays = vec![trial.rays[wrong.ray]];
-    let build =
-        || BuildCx { cancel: cx.cancel.clone(), progress: Progress::new(), pool: cx.pool.clone(), budget: cx.budget.clone() };
     let name = format!("{id}-{}-{}", row.id, row.test.id());
     let of = |reason: Reason| Failure::from(reason.of(id));
-    let fails = |trial: &Trial| Ok(check(trial, entry, row.test, &build())?.is_some());
+    let fails = |trial: &Trial| Ok(check(trial, entry, row.test, &cx.build_cx())?.is_some());
     // An answer that depends on the other rays of its batch does not show with one ray alone: then all is kept.
     let smallest = || if fails(&trial)? { shrink(trial.clone(), &fails) } else { Ok(trial.clone()) };
     let small = bar::watch(&format!("shrink {name}"), &Progress::new(), || smallest().map_err(of))?;

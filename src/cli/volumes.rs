@@ -11,10 +11,10 @@ use super::output::{print, print_json};
 use super::structures::BuildArgs;
 use super::table::{Table, facts};
 use super::{bar, rays, stats};
+use crate::accel::BuildError;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::accel::volumes::{KINDS, build_volumes};
-use crate::accel::{BuildCx, BuildError};
 use crate::lab::format::{count, number, percent, ratio};
 use crate::lab::{MachineFacts, MeasureOptions, RayKind, Report, SceneFacts, VolumeRow, VolumeTree, measure_volumes};
 use crate::scene::CameraSpec;
@@ -84,12 +84,10 @@ fn build_all(entry: &Entry, params: &ParamValues, args: &Args, model: &Model, cx
     for kind in KINDS {
         let mut params = params.clone();
         params.set("volume", kind.id).map_err(|error| Failure::Input(format!("{}: {error}", entry.id)))?;
-        let progress = Progress::new();
-        let build_cx =
-            BuildCx { cancel: cx.cancel.clone(), progress: progress.clone(), pool: cx.pool.clone(), budget: cx.budget.clone() };
+        let build_cx = cx.build_cx();
         let start = Instant::now();
         let build = || build_volumes(&model.geometry, args.build.test, &params, &build_cx);
-        let tree = bar::watch(&format!("build {}", kind.id), &progress, build).map_err(|error| match error {
+        let tree = bar::watch(&format!("build {}", kind.id), &build_cx.progress, build).map_err(|error| match error {
             BuildError::Cancelled(_) => Failure::Cancelled,
             other => Failure::Other(other.into()),
         })?;
