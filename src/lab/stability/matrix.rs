@@ -234,10 +234,9 @@ impl Ground {
         row.p999_ulps = if ulps.is_empty() { 0.0 } else { quantile(&ulps, 0.999) };
         // The fast test does not promise that no ray slips through an edge.
         let may_slip = row.test == TestKind::Fast && row.boundary_wrong == row.slipped;
-        // Nodes astray are told, and not judged yet: see docs/plan.md.
-        row.verdict = match (row.clear_wrong, row.boundary_wrong) {
-            (0, 0) => Verdict::Pass,
-            (0, _) if may_slip => Verdict::Warn,
+        row.verdict = match (row.clear_wrong, row.boundary_wrong, row.astray) {
+            (0, 0, 0) => Verdict::Pass,
+            (0, _, 0) if may_slip => Verdict::Warn,
             _ => Verdict::Fail,
         };
     }

@@ -3,7 +3,7 @@
 
 use super::cases::Trial;
 use super::judge::Wrong;
-use super::matrix::{Ground, Options};
+use super::matrix::Ground;
 use crate::accel::BuildCx;
 use crate::accel::registry::Entry;
 use crate::geometry::tri::TestKind;
@@ -13,8 +13,7 @@ use crate::scene::Reason;
 pub fn check(trial: &Trial, entry: &'static Entry, test: TestKind, cx: &BuildCx) -> Result<Option<Wrong>, Reason> {
     let ground = Ground::new("reproducer", trial, cx)?;
     let expected = ground.expected(test, cx)?;
-    let options = Options { seed: 0, rays: 1, structures: vec![entry], secs: 0.0 };
-    Ok(ground.row(entry, test, &expected, options.secs, cx)?.wrong.first().map(|wrong| wrong.why))
+    Ok(ground.row(entry, test, &expected, 0.0, cx)?.wrong.first().map(|wrong| wrong.why))
 }
 
 /// Leaves triangles out until none of those that are left can be. `trial` has one ray, which fails.
