@@ -1,5 +1,6 @@
 //! Boxes at a depth, leaves, cells.
 
+use boxwood::lab::format::count;
 use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable;
 
@@ -9,7 +10,7 @@ use crate::window::Window;
 fn boxes(w: &mut Window) -> (usize, usize) {
     w.settle();
     let c = &w.state().collected;
-    let said = format!("Showing {} of {} boxes", c.shown, c.total);
+    let said = format!("Showing {} of {} boxes", count(c.shown as u64), count(c.total as u64));
     let none = c.total == 0 && w.says("No boxes at this depth");
     assert!(none || w.says(&said), "{said}");
     (c.shown, c.total)
