@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::params::{Param, ParamValues};
 use super::{Accel, BuildCx, BuildError, brute, bsp, bvh, grid, kdtree, octree, volumes, wide};
-use crate::geometry::tri::{Exact, Fast, TestKind, TriTest, Watertight};
+use crate::geometry::tri::{BaldwinWeber, Double, Exact, Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 
 /// What kind of structure it is: raw SAH costs are comparable only within one family.
@@ -46,13 +46,20 @@ pub struct Entry {
     watertight: Build,
     fast: Build,
     exact: Build,
+    /// Tests that not every structure has.
+    others: &'static [(TestKind, Build)],
 }
 
 impl Entry {
+    /// The tests that it can be built for.
+    pub fn tests(&self) -> impl Iterator<Item = TestKind> {
+        TestKind::ALL.into_iter().chain(self.others.iter().map(|(test, _)| *test))
+    }
+
     /// Builds it for a triangle test.
     ///
     /// # Errors
-    /// Cancelled, or it would not fit.
+    /// Cancelled, it would not fit, or it does not have that test.
     pub fn build(
         &self,
         geometry: &Arc<Geometry>,
@@ -64,6 +71,10 @@ impl Entry {
             TestKind::Watertight => (self.watertight)(geometry, p, cx),
             TestKind::Fast => (self.fast)(geometry, p, cx),
             TestKind::Exact => (self.exact)(geometry, p, cx),
+            other => match self.others.iter().find(|(test, _)| *test == other) {
+                Some((_, build)) => build(geometry, p, cx),
+                None => Err(BuildError::NoSuchTest { structure: self.id, test }),
+            },
         }
     }
 
@@ -85,6 +96,7 @@ pub static ALL: &[Entry] = &[
         watertight: brute::<Watertight, false>,
         fast: brute::<Fast, false>,
         exact: brute::<Exact, false>,
+        others: &[(TestKind::Double, brute::<Double, false>), (TestKind::BaldwinWeber, brute::<BaldwinWeber, false>)],
     },
     Entry {
         id: "bound",
@@ -96,6 +108,7 @@ pub static ALL: &[Entry] = &[
         watertight: brute::<Watertight, true>,
         fast: brute::<Fast, true>,
         exact: brute::<Exact, true>,
+        others: &[],
     },
     Entry {
         id: "bvh",
@@ -107,6 +120,7 @@ pub static ALL: &[Entry] = &[
         watertight: bvh::build::<Watertight>,
         fast: bvh::build::<Fast>,
         exact: bvh::build::<Exact>,
+        others: &[],
     },
     Entry {
         id: "wide",
@@ -118,6 +132,7 @@ pub static ALL: &[Entry] = &[
         watertight: wide::build::<Watertight>,
         fast: wide::build::<Fast>,
         exact: wide::build::<Exact>,
+        others: &[],
     },
     Entry {
         id: "volumes",
@@ -129,6 +144,7 @@ pub static ALL: &[Entry] = &[
         watertight: volumes::build::<Watertight>,
         fast: volumes::build::<Fast>,
         exact: volumes::build::<Exact>,
+        others: &[],
     },
     Entry {
         id: "kdtree",
@@ -140,6 +156,7 @@ pub static ALL: &[Entry] = &[
         watertight: kdtree::build::<Watertight>,
         fast: kdtree::build::<Fast>,
         exact: kdtree::build::<Exact>,
+        others: &[],
     },
     Entry {
         id: "grid",
@@ -151,6 +168,7 @@ pub static ALL: &[Entry] = &[
         watertight: grid::build::<Watertight>,
         fast: grid::build::<Fast>,
         exact: grid::build::<Exact>,
+        others: &[],
     },
     Entry {
         id: "grid2",
@@ -162,6 +180,7 @@ pub static ALL: &[Entry] = &[
         watertight: grid::build_two_level::<Watertight>,
         fast: grid::build_two_level::<Fast>,
         exact: grid::build_two_level::<Exact>,
+        others: &[],
     },
     Entry {
         id: "octree",
@@ -173,6 +192,7 @@ pub static ALL: &[Entry] = &[
         watertight: octree::build::<Watertight>,
         fast: octree::build::<Fast>,
         exact: octree::build::<Exact>,
+        others: &[],
     },
     Entry {
         id: "bsp",
@@ -184,6 +204,7 @@ pub static ALL: &[Entry] = &[
         watertight: bsp::build::<Watertight>,
         fast: bsp::build::<Fast>,
         exact: bsp::build::<Exact>,
+        others: &[],
     },
 ];
 

@@ -54,7 +54,7 @@ impl Context {
 
     /// What building takes.
     pub fn build_cx(&self) -> BuildCx {
-        BuildCx { cancel: self.cancel.clone(), progress: Progress::new(), pool: self.pool.clone(), budget: self.budget.clone() }
+        BuildCx::new(self.cancel.clone(), Progress::new(), self.pool.clone(), self.budget.clone())
     }
 
     /// Builds a structure.

@@ -20,7 +20,7 @@ use crate::geometry::tri::TestKind;
 use crate::lab::MachineFacts;
 use crate::lab::format::{count, number, percent};
 use crate::lab::stability::cases::{self, Case, Trial};
-use crate::lab::stability::{CaseRow, Options, Row, Verdict, check, check_case, shrink};
+use crate::lab::stability::{BoxRow, BoxTest, CaseRow, Options, Row, TestPrice, Verdict, check, check_case, prices, shrink};
 use crate::scene::Reason;
 use crate::task::{Cancel, Progress};
 
@@ -34,6 +34,10 @@ pub struct Args {
     /// The structures: ids between commas, or all.
     #[arg(long, value_name = "all|ID,ID", default_value = "all")]
     structures: Many,
+    /// The triangle tests, as far as a structure has them: ids between commas, or all. double and baldwin-weber stand in
+    /// brute alone.
+    #[arg(long, value_name = "all|ID,ID", default_value = "all")]
+    tests: Tests,
     /// Makes scenes and rays: the same for the same number.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
@@ -69,29 +73,55 @@ impl FromStr for Chosen {
     }
 }
 
+/// Tests by id.
+#[derive(Clone, Debug)]
+struct Tests(Vec<TestKind>);
+
+impl FromStr for Tests {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        if s == "all" {
+            return Ok(Self(TestKind::ALL.into_iter().chain(TestKind::OTHERS).collect()));
+        }
+        s.split(',').map(|id| id.trim().parse()).collect::<Result<_, _>>().map(Self)
+    }
+}
+
 /// What is printed as JSON.
 #[derive(Serialize)]
 struct Outcome {
     seed: u64,
     machine: MachineFacts,
+    /// What the triangle tests cost by themselves.
+    tests: Vec<TestPrice>,
     cases: Vec<CaseRow>,
 }
 
 pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
-    let (Chosen(chosen), Many(structures)) = (&args.cases, &args.structures);
+    let (Chosen(chosen), Many(structures), Tests(tests)) = (&args.cases, &args.structures, &args.tests);
     let cx = Context::new(args.machine, cancel);
     // What can't be written to is told before the long work.
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|error| Failure::of_output(folder, &error))?;
     }
-    let options = Options { seed: args.seed, rays: args.rays as usize, structures: structures.clone(), secs: args.secs };
+    let options = Options {
+        seed: args.seed,
+        rays: args.rays as usize,
+        structures: structures.clone(),
+        tests: tests.clone(),
+        secs: args.secs,
+    };
+    if options.pairs().next().is_none() {
+        return Err(Failure::Input(NO_PAIR.to_owned()));
+    }
     let progress = Progress::new();
-    progress.start("cases", (chosen.len() * structures.len() * TestKind::ALL.len()) as u64);
+    progress.start("cases", (chosen.len() * options.pairs().count()) as u64);
     let check = |case: &&'static Case| {
         check_case(case, &options, &cx.build_cx(), &|| progress.advance(1)).map_err(|reason| Failure::from(reason.of(case.id)))
     };
     let cases = bar::watch("stability", &progress, || chosen.iter().map(check).collect::<Result<Vec<_>, _>>())?;
-    let outcome = Outcome { seed: args.seed, machine: cx.machine(), cases };
+    let outcome = Outcome { seed: args.seed, machine: cx.machine(), tests: prices(&cx.cancel)?, cases };
     if let Some(folder) = &args.output {
         write(folder, &outcome, &options, &cx)?;
     }
@@ -197,8 +227,43 @@ fn text(outcome: &Outcome) -> String {
             }
         }
     }
-    format!("{head}\n{}{notes}{}", table.render(), LEGEND)
+    format!("{head}\n{}{notes}{LEGEND}\n{}\n{}{OF_BOXES}", table.render(), price_table(&outcome.tests), box_table(&outcome.cases))
 }
+
+/// What the triangle tests cost by themselves.
+fn price_table(prices: &[TestPrice]) -> String {
+    let mut table = Table::new(&["triangle test", "ns/test", "bytes/triangle"]);
+    for price in prices {
+        table.row(vec![price.id.id().to_owned(), number(price.ns_per_test), count(price.bytes as u64)]);
+    }
+    table.render()
+}
+
+/// The tests of boxes, summed up over the cases.
+fn box_table(cases: &[CaseRow]) -> String {
+    let mut table = Table::new(&["box test", "boxes", "met", "missed", "hits lost", "in vain", "ns/box"]);
+    for id in BoxTest::ALL {
+        let rows = || cases.iter().flat_map(|case| &case.boxes).filter(|row| row.id == id);
+        let sum = |of: fn(&BoxRow) -> u64| rows().map(of).sum::<u64>();
+        let asked = sum(|row| row.asked);
+        let nanoseconds = rows().map(|row| row.ns_per_box * row.asked as f64).sum::<f64>() / asked as f64;
+        table.row(vec![
+            id.id().to_owned(),
+            count(asked),
+            count(sum(|row| row.met)),
+            count(sum(|row| row.missed)),
+            count(sum(|row| row.lost)),
+            count(sum(|row| row.in_vain)),
+            number(nanoseconds),
+        ]);
+    }
+    table.render()
+}
+
+const OF_BOXES: &str = "\nmissed: boxes that the ray meets exactly, and that the test calls missed. hits lost: triangles that the watertight test \
+    hits in a box of their own that is called missed. in vain: boxes that the ray misses exactly, and that are entered.\n";
+
+const NO_PAIR: &str = "none of the structures has any of the tests: double and baldwin-weber stand in brute";
 
 const LEGEND: &str = "\nnear: rays whose answer is a matter of rounding. boundary: rays through an edge or a corner, to the bit.\n\
     clear wrong: another answer than the exact one where no rounding is in the way. boundary wrong: an answer that no rounding \

@@ -11,7 +11,8 @@ use crate::lab::RasterRow;
 /// How structures are built.
 #[derive(Debug, clap::Args)]
 pub struct BuildArgs {
-    /// The triangle test: watertight, or fast (rays through shared edges may slip through).
+    /// The triangle test: watertight, fast (rays through shared edges may slip through), exact, or with brute double or
+    /// baldwin-weber.
     #[arg(long, value_name = "TEST", default_value = "watertight")]
     pub test: TestKind,
     /// Sets a parameter, as in --set bins=16. May be given many times.

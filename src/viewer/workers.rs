@@ -58,7 +58,7 @@ pub struct Building {
 pub fn build(shared: &Shared, key: Key, geometry: Arc<Geometry>) -> std::io::Result<Building> {
     let (Shared { pool, budget, .. }, wanted) = (shared.clone(), key.clone());
     let job = Job::spawn("build", shared.waker(), move |cancel, progress| {
-        let cx = BuildCx { cancel: cancel.clone(), progress: progress.clone(), pool, budget };
+        let cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
         build_now(wanted, &geometry, &cx)
     })?;
     Ok(Building { key, job })
@@ -163,7 +163,7 @@ pub fn measure_all(shared: &Shared, plan: Plan) -> std::io::Result<Measuring> {
         let mut measured = Measured { built: plan.kept, view, ..Measured::default() };
         for key in plan.missing {
             let id = key.entry.id;
-            let cx = BuildCx { cancel: cancel.clone(), progress: progress.clone(), pool: pool.clone(), budget: budget.clone() };
+            let cx = BuildCx::new(cancel.clone(), progress.clone(), pool.clone(), budget.clone());
             match build_now(key, plan.view.accel.geometry(), &cx) {
                 Ok(built) => measured.built.push(built),
                 Err(BuildError::Cancelled(cancelled)) => return Err(cancelled),

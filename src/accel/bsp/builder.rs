@@ -94,8 +94,8 @@ fn too_large(over: OverBudget) -> BuildError {
     BuildError::Memory { structure: "bsp", over, remedy: "Raise the memory budget, lower max_depth, or use bvh." }
 }
 
-fn too_many(what: &'static str) -> BuildError {
-    BuildError::TooMany { structure: "bsp", what, limit: MAX_COUNT as u64, remedy: "Lower max_depth, or use bvh." }
+fn too_many(what: &'static str, limit: usize) -> BuildError {
+    BuildError::TooMany { structure: "bsp", what, limit: limit as u64, remedy: "Lower max_depth, or use bvh." }
 }
 
 /// A cell to be divided, and what is known of it.
@@ -249,6 +249,7 @@ impl List {
 
 /// An empty list with room for all of a tree, charged.
 fn room_for(tree: &Subtree, cx: &BuildCx) -> Result<List, BuildError> {
+    let most = cx.most(MAX_COUNT);
     let (mut nodes, mut planes, mut refs) = (0, 0, 0);
     let mut open = vec![tree];
     while let Some(next) = open.pop() {
@@ -262,17 +263,17 @@ fn room_for(tree: &Subtree, cx: &BuildCx) -> Result<List, BuildError> {
                 nodes += list.nodes.len();
                 planes += list.planes.len();
                 refs += list.refs.len();
-                if list.refs.len() > MAX_COUNT {
-                    return Err(too_many("references"));
+                if list.refs.len() > most {
+                    return Err(too_many("references", most));
                 }
             }
         }
     }
-    if nodes > MAX_COUNT {
-        return Err(too_many("nodes"));
+    if nodes > most {
+        return Err(too_many("nodes", most));
     }
-    if refs > num::MAX_INDEX {
-        return Err(too_many("references"));
+    if refs > cx.most(num::MAX_INDEX) {
+        return Err(too_many("references", cx.most(num::MAX_INDEX)));
     }
     let bytes = nodes * (size_of::<BspNode>() + size_of::<Form>()) + planes * size_of::<Row>() + refs * size_of::<PrimRef>();
     let charge = cx.budget.charge(bytes as u64).map_err(too_large)?;

@@ -144,9 +144,9 @@ impl Plan {
 
     fn drafted(mut self, geometry: &Geometry, cx: &BuildCx) -> Result<Drafted, BuildError> {
         let n = geometry.live_count();
-        if n + self.allowance > num::MAX_INDEX / 2 {
-            let limit = num::MAX_INDEX as u64;
-            return Err(BuildError::TooMany { structure: ID, what: "nodes", limit, remedy: "Use a smaller model." });
+        let most = cx.most(num::MAX_INDEX);
+        if n + self.allowance > most / 2 {
+            return Err(BuildError::TooMany { structure: ID, what: "nodes", limit: most as u64, remedy: "Use a smaller model." });
         }
         let peak = cx.budget.charge(self.peak_bytes(n)).map_err(too_large)?;
         cx.progress.start("bound", n as u64);

@@ -18,7 +18,7 @@ const REFUSAL: Refusal = Refusal { structure: "grid", remedy: "Lower the density
 pub fn build(geometry: &Arc<Geometry>, density: f64, cx: &BuildCx) -> Result<Built, BuildError> {
     cx.cancel.check()?;
     let (lattice, remark) = affordable::lattice(geometry, density, cx)?;
-    let cells = REFUSAL.numbered(lattice.count() as u64, "cells")?;
+    let cells = REFUSAL.numbered(lattice.count() as u64, "cells", cx)?;
     let contents = Contents::sort(geometry, cells, &lattice, &REFUSAL, cx)?;
     Ok(Built { geometry: Arc::clone(geometry), lattice, contents, remarks: remark.into_iter().collect() })
 }

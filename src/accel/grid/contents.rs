@@ -46,9 +46,9 @@ impl Refusal {
         BuildError::Memory { structure: self.structure, over, remedy: self.remedy }
     }
 
-    /// That many cells or references, if 32 bits can number them.
-    pub fn numbered(&self, count: u64, what: &'static str) -> Result<usize, BuildError> {
-        let limit = num::MAX_INDEX as u64;
+    /// That many cells or references, if they can be numbered.
+    pub fn numbered(&self, count: u64, what: &'static str, cx: &BuildCx) -> Result<usize, BuildError> {
+        let limit = cx.most(num::MAX_INDEX) as u64;
         let fits = usize::try_from(count).ok().filter(|_| count <= limit);
         fits.ok_or(BuildError::TooMany { structure: self.structure, what, limit, remedy: self.remedy })
     }
@@ -167,7 +167,7 @@ fn sum_up(counts: &[AtomicU32], refusal: &Refusal, cx: &BuildCx) -> Result<(Vec<
     let sums: Vec<u64> = cx.pool.run(|| counts.par_chunks(FILL).map(sum).collect::<Result<_, _>>())?;
     let mut total = 0;
     let before: Vec<u64> = sums.iter().map(|sum| (total, total += sum).0).collect();
-    let total = refusal.numbered(total, "references")?;
+    let total = refusal.numbered(total, "references", cx)?;
     let mut starts = vec![0u32; counts.len() + 1];
     starts[counts.len()] = num::index(total);
     let fill = |((starts, counts), before): ((&mut [u32], &[AtomicU32]), &u64)| {

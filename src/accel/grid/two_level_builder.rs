@@ -39,7 +39,7 @@ const CHUNK: usize = 1 << 14;
 pub fn build(geometry: &Arc<Geometry>, densities: Densities, cx: &BuildCx) -> Result<Built, BuildError> {
     cx.cancel.check()?;
     let (lattice, remark) = affordable::lattice(geometry, densities.top, cx)?;
-    let tops = REFUSAL.numbered(lattice.count() as u64, "cells")?;
+    let tops = REFUSAL.numbered(lattice.count() as u64, "cells", cx)?;
     let charge = |bytes: usize| cx.budget.charge(bytes as u64).map_err(|over| REFUSAL.too_large(over));
     let (kept, counting) = (charge(tops * size_of::<Top>())?, charge(tops * size_of::<u32>())?);
     cx.progress.start("count coarse", geometry.live_count() as u64);
@@ -65,12 +65,12 @@ fn cut(lattice: Lattice, counts: Vec<AtomicU32>, density: f64, cx: &BuildCx) -> 
     for chunk in tops.chunks_mut(CHUNK) {
         cx.cancel.check()?;
         for top in chunk {
-            top.first = num::index(REFUSAL.numbered(cells, "cells")?);
+            top.first = num::index(REFUSAL.numbered(cells, "cells", cx)?);
             cells += u64::from(top.cells());
         }
     }
     // Every cell of either level has a number in walks, the root one more.
-    let numbered = REFUSAL.numbered(cells + tops.len() as u64 + 1, "cells")?;
+    let numbered = REFUSAL.numbered(cells + tops.len() as u64 + 1, "cells", cx)?;
     let cells = numbered - tops.len() - 1;
     Ok((Cuts { lattice, tops }, cells))
 }

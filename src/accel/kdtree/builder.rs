@@ -25,7 +25,7 @@ use super::{bins, sweep};
 use crate::accel::{BuildCx, BuildError};
 use crate::geometry::{Aabb, num};
 use crate::scene::{Geometry, PrimRef};
-use crate::task::{Cancel, Charge, OverBudget};
+use crate::task::{Charge, OverBudget};
 
 /// When to stop.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +83,7 @@ pub fn build(
 ) -> Result<Built, BuildError> {
     let n = geometry.live_count();
     if n >= MAX_REFS {
-        return Err(too_many("references in a cell"));
+        return Err(too_many("references in a cell", MAX_REFS));
     }
     let max_depth = if limits.max_depth == 0 { auto_depth(n) } else { limits.max_depth };
     let builder = Builder { geometry, costs, search, max_leaf: limits.max_leaf as usize, max_depth, cx };
@@ -93,7 +93,7 @@ pub fn build(
     let work = Work { cell: *geometry.bounds(), depth: 0, bad: 0, share: n as f64 };
     let tree = cx.pool.run(|| builder.subtree(work, all))?;
     cx.progress.start("join", 0);
-    let (nodes, refs) = join(tree, &cx.cancel)?;
+    let (nodes, refs) = join(tree, cx)?;
     let bytes = (nodes.capacity() * size_of::<KdNode>() + refs.capacity() * size_of::<PrimRef>()) as u64;
     let charge = cx.budget.charge(bytes).map_err(too_large)?;
     Ok(Built { geometry: Arc::clone(geometry), nodes, refs, remarks, _charge: charge })
@@ -110,8 +110,8 @@ pub fn too_large(over: OverBudget) -> BuildError {
     BuildError::Memory { structure: "kdtree", over, remedy: "Raise the memory budget, lower max_depth, or use bvh." }
 }
 
-fn too_many(what: &'static str) -> BuildError {
-    BuildError::TooMany { structure: "kdtree", what, limit: MAX_COUNT as u64, remedy: "Lower max_depth, or use bvh." }
+fn too_many(what: &'static str, limit: usize) -> BuildError {
+    BuildError::TooMany { structure: "kdtree", what, limit: limit as u64, remedy: "Lower max_depth, or use bvh." }
 }
 
 /// A cell to be divided, and what is known of it.
@@ -211,11 +211,12 @@ impl Builder<'_> {
 }
 
 /// Copies the forks and lists into one, the child below a plane right after its parent.
-fn join(tree: Subtree, cancel: &Cancel) -> Result<(Vec<KdNode>, Vec<PrimRef>), BuildError> {
+fn join(tree: Subtree, cx: &BuildCx) -> Result<(Vec<KdNode>, Vec<PrimRef>), BuildError> {
     enum Step {
         Visit(Subtree),
         Above(usize, Plane),
     }
+    let most = cx.most(MAX_COUNT);
     let (mut nodes, mut refs) = (Vec::new(), Vec::new());
     let mut open = vec![Step::Visit(tree)];
     while let Some(step) = open.pop() {
@@ -228,12 +229,12 @@ fn join(tree: Subtree, cancel: &Cancel) -> Result<(Vec<KdNode>, Vec<PrimRef>), B
             }
             Step::Above(at, plane) => nodes[at] = KdNode::inner(plane.axis, plane.pos, num::index(nodes.len())),
             Step::Visit(Subtree::List(list)) => {
-                cancel.check()?;
-                if nodes.len() + list.nodes.len() > MAX_COUNT {
-                    return Err(too_many("nodes"));
+                cx.cancel.check()?;
+                if nodes.len() + list.nodes.len() > most {
+                    return Err(too_many("nodes", most));
                 }
-                if refs.len() + list.refs.len() > num::MAX_INDEX || list.refs.len() > MAX_COUNT {
-                    return Err(too_many("references"));
+                if refs.len() + list.refs.len() > cx.most(num::MAX_INDEX) || list.refs.len() > most {
+                    return Err(too_many("references", most));
                 }
                 let (by, from) = (num::index(nodes.len()), num::index(refs.len()));
                 nodes.extend(list.nodes.iter().map(|n| n.moved(by, from)));

@@ -51,11 +51,10 @@ fn too_many(what: &'static str, limit: usize) -> BuildError {
 /// side, then what is below the first of them, and so on.
 pub fn join(tree: Subtree, cx: &BuildCx) -> Result<(Vec<Node>, Vec<PrimRef>, Charge), BuildError> {
     let (node_count, ref_count) = size(&tree);
-    if node_count > MAX_NODES {
-        return Err(too_many("nodes", MAX_NODES));
-    }
-    if ref_count > MAX_LEAF {
-        return Err(too_many("references", MAX_LEAF));
+    for (what, count, most) in [("nodes", node_count, cx.most(MAX_NODES)), ("references", ref_count, cx.most(MAX_LEAF))] {
+        if count > most {
+            return Err(too_many(what, most));
+        }
     }
     let charge = cx.budget.charge(bytes(node_count, ref_count)).map_err(too_large)?;
     let (mut nodes, mut refs) = (Vec::with_capacity(node_count), Vec::with_capacity(ref_count));

@@ -112,14 +112,15 @@ pub fn build_volumes(
     p: &ParamValues,
     cx: &BuildCx,
 ) -> Result<Box<dyn Volumes>, BuildError> {
-    let built = bvh::tree(geometry, p, cx)?;
     let id = p.choice("volume");
     let kind = KINDS.iter().find(|kind| kind.id == id).unwrap_or(&KINDS[0]);
-    match test {
-        TestKind::Watertight => (kind.watertight)(built, cx),
-        TestKind::Fast => (kind.fast)(built, cx),
-        TestKind::Exact => (kind.exact)(built, cx),
-    }
+    let make = match test {
+        TestKind::Watertight => kind.watertight,
+        TestKind::Fast => kind.fast,
+        TestKind::Exact => kind.exact,
+        TestKind::Double | TestKind::BaldwinWeber => return Err(BuildError::NoSuchTest { structure: "volumes", test }),
+    };
+    make(bvh::tree(geometry, p, cx)?, cx)
 }
 
 /// Puts volumes around the nodes. Those traced with `Fast` hold the boxes of the triangles: see

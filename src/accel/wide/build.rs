@@ -154,11 +154,12 @@ impl<N: Node> Parts<N> {
     fn together(self, cx: &BuildCx) -> Result<(Packed<N>, Child), BuildError> {
         let Self { mut upper, below } = self;
         let units = upper.units.len() + below.iter().map(|part| part.list.units.len()).sum::<usize>();
-        if units > MAX_UNITS {
+        let most = cx.most(MAX_UNITS);
+        if units > most {
             return Err(BuildError::TooMany {
                 structure: ID,
                 what: "units of 32 bytes",
-                limit: MAX_UNITS as u64,
+                limit: most as u64,
                 remedy: "Use a smaller model.",
             });
         }

@@ -6,6 +6,7 @@
 //! its bound; t, before it is brought into the interval of the triangle's box, is then within its bound as well.
 
 use super::TestKind;
+use super::baldwin_weber::{Number, Transformation};
 use crate::geometry::Ray;
 use crate::geometry::num::UNIT_ROUNDOFF;
 use glam::{DVec3, Vec3};
@@ -29,6 +30,8 @@ pub fn bounds(test: TestKind, ray: &Ray, tri: &[Vec3; 3]) -> Bounds {
         TestKind::Exact => Bounds { sides: [0.0; 3], t: 0.0 },
         TestKind::Fast => fast(d, corners),
         TestKind::Watertight => watertight(d, corners),
+        TestKind::Double => double(d, corners),
+        TestKind::BaldwinWeber => baldwin_weber(ray, tri, d, corners),
     }
 }
 
@@ -99,4 +102,78 @@ fn watertight(d: DVec3, corners: [DVec3; 3]) -> Bounds {
     let rounded: f64 = (0..3).map(|i| (sizes[i] + values[i]) * (5.0 * depth[i].abs() + 3.0 * seen.abs())).sum::<f64>() * U;
     let of_t = ((weights + rounded) / (det.abs() - whole) + 5.05 * U * seen.abs()) / d[z].abs();
     Bounds { sides, t: of_t }
+}
+
+/// 64 bits throughout: at most nine roundings in each of six terms of a determinant, and t is rounded once to 32.
+fn double(d: DVec3, [a, b, c]: [DVec3; 3]) -> Bounds {
+    const OF_64: f64 = 64.0 * (f64::EPSILON / 2.0);
+    let [of_a, of_b, of_c] = [a, b, c].map(|p| p.abs().max_element());
+    let long = OF_64 * d.abs().max_element();
+    let sides = [long * of_b * of_c, long * of_c * of_a, long * of_a * of_b];
+    let values = [d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b))];
+    let det: f64 = values.iter().sum();
+    let whole = sides.iter().sum::<f64>() + 2.0 * f64::EPSILON * values.iter().map(|v| v.abs()).sum::<f64>();
+    if det.abs() <= 2.0 * whole {
+        return Bounds { sides, t: f64::INFINITY };
+    }
+    let t = a.dot(b.cross(c)) / det;
+    Bounds { sides, t: 2.0 * (OF_64 * of_a * of_b * of_c + t.abs() * whole) / det.abs() + 1.01 * U * t.abs() + TINY }
+}
+
+/// Baldwin and Weber: the error is carried along with the operations of the test. It may be as large as one likes for
+/// slivers, of which the stored transformation is hardly known.
+fn baldwin_weber(ray: &Ray, tri: &[Vec3; 3], d: DVec3, [a, b, c]: [DVec3; 3]) -> Bounds {
+    let axis = Transformation::<f32>::new(tri).axis;
+    let [t, u, v] = Transformation::<Rounded>::along(tri, |_| axis).meet(ray.origin, ray.dir);
+    let det = d.dot((b - a).cross(c - a)).abs();
+    let side = |error: f64| if error.is_finite() { error * det } else { f64::INFINITY };
+    let third = u.error + v.error + U * (u.value + v.value).abs();
+    let of_t = if t.error.is_finite() { t.error } else { f64::INFINITY };
+    Bounds { sides: [side(third), side(u.error), side(v.error)], t: of_t }
+}
+
+/// Half of the least denormal number of 32 bits, which a result may be off by however small it is.
+const TINY: f64 = 0.5 / (1u128 << 126) as f64 / (1u32 << 23) as f64;
+
+/// A number, and how far off it may be if it is worked out in 32 bits.
+#[derive(Clone, Copy)]
+struct Rounded {
+    value: f64,
+    error: f64,
+}
+
+impl Rounded {
+    /// Rounded once more.
+    fn once_more(value: f64, error: f64) -> Self {
+        Self { value, error: error + 1.01 * U * (value.abs() + error) + TINY }
+    }
+}
+
+impl Number for Rounded {
+    fn of(x: f32) -> Self {
+        Self { value: f64::from(x), error: 0.0 }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self::once_more(self.value + other.value, self.error + other.error)
+    }
+
+    fn minus(self, other: Self) -> Self {
+        Self::once_more(self.value - other.value, self.error + other.error)
+    }
+
+    fn times(self, other: Self) -> Self {
+        let error = self.value.abs() * other.error + other.value.abs() * self.error + self.error * other.error;
+        Self::once_more(self.value * other.value, error)
+    }
+
+    fn over(self, other: Self) -> Self {
+        let (value, least) = (self.value / other.value, other.value.abs() - other.error);
+        let error = if least > 0.0 { (self.error + value.abs() * other.error) / least } else { f64::INFINITY };
+        Self::once_more(value, error)
+    }
+
+    fn size(self) -> f64 {
+        self.value.abs()
+    }
 }

@@ -1,5 +1,6 @@
 //! Möller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection".
 
+use super::plain::Plain;
 use super::{Meets, Own, TestKind, TriHit, TriTest};
 use crate::geometry::eight::{Points, Rays};
 use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
@@ -9,41 +10,37 @@ use glam::Vec3;
 /// Few operations. Rays through shared edges may slip through; boxes are widened all the same, since
 /// a box taken as it is can cut the ray where it meets the triangle, and clamping t would move it far.
 #[derive(Clone, Copy, Debug)]
-pub struct Fast {
-    origin: Vec3,
-    dir: Vec3,
-    slabs: Slabs,
-}
+pub struct Fast(Plain);
 
 impl TriTest for Fast {
     const KIND: TestKind = TestKind::Fast;
 
     #[inline(always)]
     fn prepare(ray: &Ray, bounds: &Aabb) -> Self {
-        Self { origin: ray.origin, dir: ray.dir, slabs: Slabs::new(ray, bounds) }
+        Self(Plain::prepare(ray, bounds))
     }
 
     #[inline(always)]
     fn slabs(&self) -> &Slabs {
-        &self.slabs
+        &self.0.slabs
     }
 
     #[inline(always)]
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
         let (e1, e2) = (tri[1] - tri[0], tri[2] - tri[0]);
-        let p = self.dir.cross(e2);
+        let p = self.0.dir.cross(e2);
         let det = e1.dot(p);
         if det == 0.0 {
             return None;
         }
         let inv = 1.0 / det;
-        let s = self.origin - tri[0];
+        let s = self.0.origin - tri[0];
         let u = s.dot(p) * inv;
         if !(0.0..=1.0).contains(&u) {
             return None;
         }
         let q = s.cross(e1);
-        let v = self.dir.dot(q) * inv;
+        let v = self.0.dir.dot(q) * inv;
         if !(v >= 0.0 && u + v <= 1.0) {
             return None;
         }
@@ -70,19 +67,16 @@ impl TriTest for Fast {
 
     #[inline(always)]
     fn own(&self) -> Own<f32> {
-        let (o, d) = (self.origin, self.dir);
-        [o.x, o.y, o.z, d.x, d.y, d.z, 0.0]
+        self.0.own()
     }
 
     #[inline(always)]
     fn own_of_eight<S: Simd>(s: S, rays: &Rays<S::F>) -> Own<S::F> {
-        let (o, d) = (rays.origin, rays.dir);
-        [o.x, o.y, o.z, d.x, d.y, d.z, s.splat(0.0)]
+        Plain::own_of_eight(s, rays)
     }
 
     #[inline(always)]
     fn from_own(own: &Own<f32>, slabs: Slabs) -> Self {
-        let &[ox, oy, oz, dx, dy, dz, _] = own;
-        Self { origin: Vec3::new(ox, oy, oz), dir: Vec3::new(dx, dy, dz), slabs }
+        Self(Plain::from_own(own, slabs))
     }
 }

@@ -1,17 +1,23 @@
 //! Ray-triangle tests. A test is a type parameter of every structure; each brings the box test
-//! that goes with it. A new test is one file here and one line in [`TestKind`].
+//! that goes with it. A new test is one file here and one line in [`TestKind`]. [`Double`] and [`BaldwinWeber`] are
+//! there to be compared with: brute force alone has them.
 //!
 //! All tests share the rule that makes every structure agree: a triangle is hit only if the test
 //! accepts and the ray's interval in the triangle's own box is not empty; t is clamped into that
 //! interval, and only then compared with the closed `[tmin, tmax]`.
 
+mod baldwin_weber;
 mod block;
 pub mod bounds;
+mod double;
 mod exact;
 mod fast;
+mod plain;
 mod watertight;
 
+pub use baldwin_weber::{BaldwinWeber, Transformation};
 pub use block::{Block, Eight, corners};
+pub use double::Double;
 pub use exact::Exact;
 pub use fast::Fast;
 pub use watertight::Watertight;
@@ -149,6 +155,13 @@ pub struct Meets<S: Simd> {
 }
 
 impl<S: Simd> Meets<S> {
+    /// Nothing is known of any.
+    #[inline(always)]
+    fn doubtful(s: S) -> Self {
+        let zero = s.splat(0.0);
+        Self { met: s.lt(zero, zero), doubt: Some(s.le(zero, zero)), t: zero, u: zero, v: zero }
+    }
+
     /// Whether any may be.
     #[inline(always)]
     pub fn any(&self, s: S) -> bool {
@@ -203,11 +216,23 @@ pub enum TestKind {
     Fast,
     /// [`Exact`]: no rounding decides anything.
     Exact,
+    /// [`Double`]: 64 bits throughout.
+    Double,
+    /// [`BaldwinWeber`]: a transformation stored with each triangle.
+    #[serde(rename = "baldwin-weber")]
+    BaldwinWeber,
 }
 
 impl TestKind {
-    /// Every test, the default first.
+    /// The tests that every structure has, the default first.
     pub const ALL: [Self; 3] = [Self::Watertight, Self::Fast, Self::Exact];
+    /// Those that brute force has besides.
+    pub const OTHERS: [Self; 2] = [Self::Double, Self::BaldwinWeber];
+
+    /// Whether no ray slips through an edge or a corner that triangles share.
+    pub const fn is_watertight(self) -> bool {
+        matches!(self, Self::Watertight | Self::Exact)
+    }
 
     /// The name used on the command line and in files.
     pub const fn id(self) -> &'static str {
@@ -215,6 +240,8 @@ impl TestKind {
             Self::Watertight => "watertight",
             Self::Fast => "fast",
             Self::Exact => "exact",
+            Self::Double => "double",
+            Self::BaldwinWeber => "baldwin-weber",
         }
     }
 
@@ -224,6 +251,8 @@ impl TestKind {
             Self::Watertight => "Watertight",
             Self::Fast => "Fast",
             Self::Exact => "Exact",
+            Self::Double => "Double",
+            Self::BaldwinWeber => "Baldwin-Weber",
         }
     }
 
@@ -233,6 +262,10 @@ impl TestKind {
             Self::Watertight => "Woop, Benthin and Wald 2013: rays through shared edges and vertices never slip through.",
             Self::Fast => "Möller and Trumbore 1997: fewer operations; rays through shared edges may slip through.",
             Self::Exact => "Shewchuk 1997: exact signs behind a filter, and t correctly rounded: no hit is a matter of rounding.",
+            Self::Double => "64 bits throughout: smaller errors, none of them promised away.",
+            Self::BaldwinWeber => {
+                "Baldwin and Weber 2016: a transformation stored with each triangle; rays through shared edges may slip through."
+            }
         }
     }
 }
@@ -241,8 +274,10 @@ impl std::str::FromStr for TestKind {
     type Err = String;
 
     fn from_str(s: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|kind| kind.id() == s);
-        found.ok_or_else(|| format!("there is no triangle test '{s}': use watertight, fast or exact"))
+        let found = Self::ALL.into_iter().chain(Self::OTHERS).find(|kind| kind.id() == s);
+        found.ok_or_else(|| {
+            format!("there is no triangle test '{s}': use watertight, fast or exact, or with brute double or baldwin-weber")
+        })
     }
 }
 
@@ -275,6 +310,12 @@ mod tests {
     #[test]
     fn watertight_knows_the_simple_answers() {
         knows_the_simple_answers::<Watertight>();
+    }
+
+    #[test]
+    fn double_and_baldwin_weber_know_the_simple_answers() {
+        knows_the_simple_answers::<Double>();
+        knows_the_simple_answers::<BaldwinWeber>();
     }
 
     #[test]

@@ -42,8 +42,7 @@ impl Recipe for Ours {
     }
 
     fn build(&self, geometry: &Arc<Geometry>, pool: &Pool) -> Result<Built, NotBuilt> {
-        let (cancel, progress, pool, budget) = (self.cancel.clone(), Progress::new(), pool.clone(), self.budget.clone());
-        let cx = BuildCx { cancel, progress, pool, budget };
+        let cx = BuildCx::new(self.cancel.clone(), Progress::new(), pool.clone(), self.budget.clone());
         let built = build_timed(self.entry, geometry, self.test, &self.params, &cx).map_err(|error| match error {
             BuildError::Cancelled(cancelled) => cancelled.into(),
             error => NotBuilt::Because(error.to_string()),

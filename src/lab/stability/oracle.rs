@@ -38,25 +38,34 @@ impl Passing {
 /// Of each product of three components: what 64 bits may be off by.
 const OF_64: f64 = 64.0 * (f64::EPSILON / 2.0);
 
-/// More than any test's bound of a side, of the greatest components of the ray's direction and of the corners: 43 u for
+/// More than the bound of a side of the tests whose bounds are relative to it, of the greatest components of the ray's direction and of the corners: 43 u for
 /// each of the three determinants of the fast test, whose edges are up to twice as long, and as much again.
 const OF_ANY_TEST: f64 = 1024.0 * crate::geometry::num::UNIT_ROUNDOFF as f64;
 
 /// All triangles that a ray of the scaled space passes so closely that some test might meet them.
 pub fn passings(geometry: &Geometry, ray: &Ray) -> Vec<Passing> {
+    passings_of(geometry, ray, (0..geometry.live_count()).map(|i| geometry.live(i)))
+}
+
+/// The same of some triangles.
+pub fn passings_of(geometry: &Geometry, ray: &Ray, prims: impl Iterator<Item = PrimRef>) -> Vec<Passing> {
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
-    let long = d.abs().max_element();
-    let close = |i: usize| {
-        let prim = geometry.live(i);
+    let (long, slabs) = (d.abs().max_element(), Slabs::new(ray, geometry.bounds()));
+    let close = |prim: PrimRef| {
         let tri = geometry.corners(prim);
         let [a, b, c] = tri.map(|p| p.as_dvec3() - o);
         let sides = [d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b))];
         let size = a.abs().max(b.abs()).max(c.abs()).max_element();
         let (least, greatest) = (sides[0].min(sides[1]).min(sides[2]), sides[0].max(sides[1]).max(sides[2]));
         let near = OF_ANY_TEST * long * size * size;
-        (least >= -near || greatest <= near).then(|| passing(ray, prim, &tri, [a, b, c], sides))
+        // What a test may report beyond that is still in the triangle's box.
+        let reported = || {
+            let (entry, exit) = slabs.interval(&Aabb::of_triangle(&tri));
+            entry <= exit
+        };
+        (least >= -near || greatest <= near || reported()).then(|| passing(ray, prim, &tri, [a, b, c], sides))
     };
-    (0..geometry.live_count()).filter_map(close).collect()
+    prims.filter_map(close).collect()
 }
 
 fn passing(ray: &Ray, prim: PrimRef, tri: &[Vec3; 3], [a, b, c]: [DVec3; 3], sides: [f64; 3]) -> Passing {

@@ -20,5 +20,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         [x * size, -x * size, y * size * 0.2]
     };
     let triangles: Vec<[Vec3; 3]> = (0..500).map(around).collect();
-    Trial { rays: shapes::aimed(random, &triangles, 2.0, rays), triangles, closed: false }
+    Trial { rays: shapes::aimed(random, &triangles, 2.0, rays), triangles, closed: false, ..Trial::default() }
 }

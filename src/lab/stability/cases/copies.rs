@@ -16,5 +16,10 @@ fn make(random: &mut Random, rays: usize) -> Trial {
     let tri = [Vec3::new(0.0, 0.1, 0.2), Vec3::new(1.0, 0.0, 0.3), Vec3::new(0.3, 0.9, -0.2)];
     // Each ray meets all of them: few rays, and in a short run fewer copies.
     let copies = (50 * rays).clamp(2_000, 100_000);
-    Trial { rays: shapes::aimed(random, &[tri], 2.0, (rays / 100).max(20)), triangles: vec![tri; copies], closed: false }
+    Trial {
+        rays: shapes::aimed(random, &[tri], 2.0, (rays / 100).max(20)),
+        triangles: vec![tri; copies],
+        closed: false,
+        ..Trial::default()
+    }
 }

@@ -24,5 +24,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
             _ => {}
         }
     }
-    Trial { rays: shapes::aimed(random, &good, 3.0, rays), triangles, closed: true }
+    Trial { rays: shapes::aimed(random, &good, 3.0, rays), triangles, closed: true, ..Trial::default() }
 }

@@ -30,5 +30,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
     for (i, ray) in rays.iter_mut().enumerate().filter(|(i, _)| i % 3 == 0) {
         ray.dir[i / 3 % 3] = tiny(random);
     }
-    Trial { rays, triangles, closed: false }
+    Trial { rays, triangles, closed: false, ..Trial::default() }
 }

@@ -18,5 +18,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         [a, b, b + random.in_ball() * 0.004]
     };
     let triangles: Vec<[Vec3; 3]> = (0..400).map(thin).collect();
-    Trial { rays: shapes::aimed(random, &triangles, 3.0, rays), triangles, closed: false }
+    Trial { rays: shapes::aimed(random, &triangles, 3.0, rays), triangles, closed: false, ..Trial::default() }
 }

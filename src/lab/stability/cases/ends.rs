@@ -32,5 +32,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         };
         Ray { origin, dir: Vec3::Z * 2.0, tmin, tmax }
     };
-    Trial { rays: (0..rays).map(ray).collect(), triangles, closed: false }
+    Trial { rays: (0..rays).map(ray).collect(), triangles, closed: false, ..Trial::default() }
 }

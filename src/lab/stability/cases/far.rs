@@ -28,5 +28,5 @@ fn make(random: &mut Random, rays: usize, away: f32) -> Trial {
     };
     let rays = (0..rays).map(ray).filter(|ray| ray.dir != Vec3::ZERO).collect();
     // Corners that fall together leave edges without a second triangle.
-    Trial { rays, triangles, closed: false }
+    Trial { rays, triangles, closed: false, ..Trial::default() }
 }

@@ -28,5 +28,5 @@ fn make(random: &mut Random, rays: usize, count: usize) -> Trial {
     } else {
         shapes::aimed(random, &triangles, 2.0, rays)
     };
-    Trial { rays, triangles, closed: false }
+    Trial { rays, triangles, closed: false, ..Trial::default() }
 }

@@ -37,5 +37,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
     for ray in all.iter_mut().filter(|ray| ray.dir == Vec3::ZERO) {
         ray.dir = shapes::target(random, &triangles) - ray.origin;
     }
-    Trial { rays: all, triangles, closed: false }
+    Trial { rays: all, triangles, closed: false, ..Trial::default() }
 }

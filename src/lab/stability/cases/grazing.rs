@@ -29,5 +29,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         Ray::new(origin, at - origin)
     };
     let rays = (0..i32::try_from(rays).unwrap_or(i32::MAX)).map(ray).collect();
-    Trial { rays, triangles, closed: false }
+    Trial { rays, triangles, closed: false, ..Trial::default() }
 }

@@ -36,5 +36,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         let scale = shapes::one(random, &[1.0f32, 0.25, 3.0]);
         Ray::new(at - dir * shapes::one(random, &[0.0f32, 0.5, 4.0]), dir * scale)
     };
-    Trial { rays: (0..rays).map(ray).collect(), triangles, closed: false }
+    Trial { rays: (0..rays).map(ray).collect(), triangles, closed: false, ..Trial::default() }
 }

@@ -20,5 +20,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
     let apart = (0..24).flat_map(|i| square(f32::from_bits(0.5f32.to_bits() + i)));
     let equal = (0..24).flat_map(|_| square(-0.5));
     let triangles: Vec<[Vec3; 3]> = apart.chain(equal).collect();
-    Trial { rays: shapes::aimed(random, &triangles, 3.0, rays), triangles, closed: false }
+    Trial { rays: shapes::aimed(random, &triangles, 3.0, rays), triangles, closed: false, ..Trial::default() }
 }

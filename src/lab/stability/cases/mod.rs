@@ -12,16 +12,19 @@ mod few;
 mod flat;
 mod grazing;
 mod grid_lines;
+mod indices;
 mod layers;
 mod non_finite;
+mod planes;
 mod scales;
 mod series;
-mod shapes;
+pub(super) mod shapes;
 mod shared_edges;
 mod slivers;
 mod spanning;
 mod stadium;
 mod surface;
+mod teapot;
 mod zero_directions;
 
 use crate::geometry::Ray;
@@ -38,6 +41,9 @@ pub struct Trial {
     pub rays: Vec<Ray>,
     /// Whether the triangles are the whole surface of one or more solids, neighbours sharing corners to the bit.
     pub closed: bool,
+    /// The most entries of a list that structures may index, if it is not what 32 bits number: then one may say that it
+    /// does not fit, and must be right if it does.
+    pub indices: Option<usize>,
 }
 
 impl Trial {
@@ -84,6 +90,7 @@ impl Case {
 pub static ALL: &[Case] = &[
     zero_directions::CASE,
     grid_lines::CASE,
+    planes::CASE,
     flat::CASE,
     shared_edges::CASE,
     slivers::CASE,
@@ -100,6 +107,9 @@ pub static ALL: &[Case] = &[
     stadium::HUNDRED,
     stadium::HUNDRED_THOUSAND,
     stadium::HUNDRED_MILLION,
+    teapot::HUNDRED,
+    teapot::HUNDRED_THOUSAND,
+    teapot::HUNDRED_MILLION,
     non_finite::CASE,
     degenerate::CASE,
     copies::CASE,
@@ -114,6 +124,9 @@ pub static ALL: &[Case] = &[
     few::TWO,
     few::THREE,
     few::FIVE,
+    indices::FEW,
+    indices::SOME,
+    indices::MANY,
 ];
 
 /// The case of that id.

@@ -28,5 +28,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
             triangles.push([Vec3::NAN; 3]);
         }
     }
-    Trial { rays, triangles, closed: true }
+    Trial { rays, triangles, closed: true, ..Trial::default() }
 }

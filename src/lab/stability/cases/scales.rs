@@ -24,5 +24,5 @@ fn make(random: &mut Random, rays: usize, scale: f32) -> Trial {
     let far = shapes::one(random, &[2.0f32, 3.0]) * scale;
     let rays = shapes::aimed(random, &triangles, far, rays);
     let rays = rays.into_iter().map(|ray| Ray { dir: ray.dir / scale, ..ray }).collect();
-    Trial { rays, triangles, closed: true }
+    Trial { rays, triangles, closed: true, ..Trial::default() }
 }

@@ -24,5 +24,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         let origin = if i.is_multiple_of(2) { Vec3::splat(-1.0) + random.in_ball() } else { Vec3::splat(2.0) + random.in_ball() };
         Ray::new(origin, shapes::target(random, &triangles) - origin)
     };
-    Trial { rays: (0..rays).map(ray).collect(), triangles, closed: false }
+    Trial { rays: (0..rays).map(ray).collect(), triangles, closed: false, ..Trial::default() }
 }

@@ -26,5 +26,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         Ray::new(origin, at - origin)
     };
     let rays = (0..rays).map(ray).filter(|ray| ray.dir != Vec3::ZERO).collect();
-    Trial { rays, triangles, closed: true }
+    Trial { rays, triangles, closed: true, ..Trial::default() }
 }

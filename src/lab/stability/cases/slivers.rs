@@ -21,5 +21,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         [a, a + along, a + along * cap + across]
     };
     let triangles: Vec<[Vec3; 3]> = (0..400).map(sliver).collect();
-    Trial { rays: shapes::aimed(random, &triangles, 2.5, rays), triangles, closed: false }
+    Trial { rays: shapes::aimed(random, &triangles, 2.5, rays), triangles, closed: false, ..Trial::default() }
 }

@@ -19,5 +19,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
     };
     let mut triangles: Vec<[Vec3; 3]> = (0..2000).map(small).collect();
     triangles.extend((0..30).map(|_| [random.direction() * 2.0, random.direction() * 2.0, random.direction() * 2.0]));
-    Trial { rays: shapes::aimed(random, &triangles, 4.0, rays), triangles, closed: false }
+    Trial { rays: shapes::aimed(random, &triangles, 4.0, rays), triangles, closed: false, ..Trial::default() }
 }

@@ -20,5 +20,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         Ray::new(at, dir)
     };
     let rays = (0..rays).map(ray).filter(Ray::is_valid).collect();
-    Trial { rays, triangles, closed: true }
+    Trial { rays, triangles, closed: true, ..Trial::default() }
 }

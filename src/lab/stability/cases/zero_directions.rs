@@ -25,5 +25,5 @@ fn make(random: &mut Random, rays: usize) -> Trial {
         let dir = directions[i % directions.len()];
         Ray::new(if (i / directions.len()).is_multiple_of(2) { at } else { at - dir * 2.0 }, dir)
     };
-    Trial { rays: (0..rays).map(ray).collect(), triangles, closed: true }
+    Trial { rays: (0..rays).map(ray).collect(), triangles, closed: true, ..Trial::default() }
 }

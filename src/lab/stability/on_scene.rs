@@ -1,0 +1,192 @@
+//! The same rules on any scene: what structures answer to rays of a view, beside the exact test over a plain BVH, which the
+//! lab holds to the oracle. Where an answer differs, the oracle itself judges it.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::judge::{Expected, Wrong, expected};
+use super::oracle::passings_of;
+use crate::accel::cell::{Descend, walk};
+use crate::accel::registry::{self, Family};
+use crate::accel::{Accel, BuildCx, BuildError, Hit, Mode};
+use crate::geometry::space::Entered;
+use crate::geometry::tri::{TestKind, bounds::bounds};
+use crate::geometry::{Ray, Slabs};
+use crate::scene::{Geometry, PrimRef};
+use crate::task::{Cancel, Cancelled, Pool};
+
+/// What came out of one structure.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneRow {
+    /// The structure.
+    pub id: String,
+    /// The triangle test.
+    pub test: TestKind,
+    /// Rays traced.
+    pub rays: usize,
+    /// Rays that are answered otherwise than exactly, as rounding may have it.
+    pub rounded: usize,
+    /// Rays that are answered wrongly.
+    pub wrong: usize,
+    /// The first of those that are not answered exactly, the wrong ones first.
+    pub differing: Vec<DifferingRay>,
+}
+
+/// A ray that is not answered exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DifferingRay {
+    /// Which of the rays.
+    pub ray: usize,
+    /// What is wrong; nothing if rounding explains it.
+    pub why: Option<Wrong>,
+    /// The exact t, in the world; infinite if nothing is hit.
+    pub t: f32,
+}
+
+/// Rays compared at a time.
+const CHUNK: usize = 1024;
+/// Differing rays kept of a row.
+const KEPT: usize = 512;
+
+/// What others are compared with.
+pub struct Reference {
+    accel: Box<dyn Accel>,
+    closed: bool,
+}
+
+impl Reference {
+    /// Builds it. Where the surface is `closed`, nothing may slip through.
+    ///
+    /// # Errors
+    /// Cancelled, or it would not fit.
+    pub fn build(geometry: &Arc<Geometry>, closed: bool, cx: &BuildCx) -> Result<Self, BuildError> {
+        let entry = registry::ALL.iter().find(|entry| entry.family == Family::Bvh).unwrap_or(&registry::ALL[0]);
+        let mut params = entry.defaults();
+        // Without triangles cut: below, boxes of nodes must hold those of their triangles.
+        let _ = params.set("builder", "binned"); // a structure without that choice cuts none
+        Ok(Self { accel: entry.build(geometry, TestKind::Exact, &params, cx)?, closed })
+    }
+
+    /// Traces the rays through a structure that was built over the same geometry, and judges it.
+    ///
+    /// # Errors
+    /// [`Cancelled`] within 100 ms of the request.
+    pub fn compare(
+        &self,
+        (id, test): (&str, TestKind),
+        accel: &dyn Accel,
+        rays: &[Ray],
+        pool: &Pool,
+        cancel: &Cancel,
+    ) -> Result<SceneRow, Cancelled> {
+        let compare = |(chunk, rays): (usize, &[Ray])| self.chunk(test, accel, chunk * CHUNK, rays, cancel);
+        let parts: Result<Vec<Vec<DifferingRay>>, _> = pool.run(|| rays.par_chunks(CHUNK).enumerate().map(compare).collect());
+        let mut differing = parts?.concat();
+        differing.sort_by_key(|ray| ray.why.is_none());
+        let wrong = differing.iter().filter(|ray| ray.why.is_some()).count();
+        let rounded = differing.len() - wrong;
+        differing.truncate(KEPT);
+        Ok(SceneRow { id: id.to_owned(), test, rays: rays.len(), rounded, wrong, differing })
+    }
+
+    fn chunk(
+        &self,
+        test: TestKind,
+        accel: &dyn Accel,
+        first: usize,
+        rays: &[Ray],
+        cancel: &Cancel,
+    ) -> Result<Vec<DifferingRay>, Cancelled> {
+        let (mut hits, mut exact) = (vec![None; rays.len()], vec![None; rays.len()]);
+        accel.trace(rays, Mode::Closest, &mut hits, cancel)?;
+        self.accel.trace(rays, Mode::Closest, &mut exact, cancel)?;
+        let geometry = accel.geometry();
+        let mut differing = Vec::new();
+        for (i, ray) in rays.iter().enumerate() {
+            let (hit, exact): (Option<Hit>, Option<Hit>) = (hits[i], exact[i]);
+            let same = match (&hit, &exact) {
+                (None, None) => true,
+                (Some(a), Some(b)) => (a.instance, a.primitive) == (b.instance, b.primitive) && a.t == b.t,
+                _ => false,
+            };
+            if same || !ray.is_valid() {
+                continue;
+            }
+            let entered = geometry.space().enter(ray);
+            if explained(test, geometry, &entered, hit.as_ref(), exact.as_ref()) {
+                continue;
+            }
+            cancel.check()?;
+            let why = self.expected(test, &entered.ray).judge(geometry, &entered.back, hit.as_ref()).err();
+            differing.push(DifferingRay { ray: first + i, why, t: exact.map_or(f32::INFINITY, |hit| hit.t) });
+        }
+        Ok(differing)
+    }
+
+    /// What may be reported of a ray of the scaled space.
+    fn expected(&self, test: TestKind, ray: &Ray) -> Expected {
+        let geometry = self.accel.geometry();
+        let slabs = Slabs::new(ray, geometry.bounds());
+        let mut prims: Vec<PrimRef> = Vec::new();
+        walk(self.accel.as_ref(), &mut |cell| {
+            let (entry, exit) = slabs.interval(cell.shape.bounds());
+            if entry > exit {
+                return ControlFlow::Continue(Descend::No);
+            }
+            if cell.is_leaf() {
+                self.accel.prims(cell, &mut |prim| prims.push(prim));
+            }
+            ControlFlow::Continue(Descend::Yes)
+        });
+        expected(test, geometry, self.closed, ray, &passings_of(geometry, ray, prims.into_iter()))
+    }
+}
+
+/// Whether it is the same triangle, at a t that is off by no more than the test's bound: nothing to speak of.
+fn explained(test: TestKind, geometry: &Geometry, entered: &Entered, hit: Option<&Hit>, exact: Option<&Hit>) -> bool {
+    let (Some(hit), Some(exact)) = (hit, exact) else { return false };
+    if (hit.instance, hit.primitive) != (exact.instance, exact.primitive) {
+        return false;
+    }
+    let tri = geometry.corners(geometry.flat(hit.instance, hit.primitive));
+    let bound = bounds(test, &entered.ray, &tri).t;
+    let [t, exactly] = [hit, exact].map(|hit| f64::from(entered.back.scaled_t(hit.t)));
+    // The exact one is rounded as well.
+    (t - exactly).abs() <= bound + 2.0 * entered.back.rounding(exact.t) + exactly.abs() * f64::from(f32::EPSILON)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cases;
+    use super::*;
+    use crate::scene::LoadCx;
+
+    fn row(case: &str, test: TestKind, closed: bool) -> SceneRow {
+        let trial = cases::find(case).expect("a case").trial(7, 3000);
+        let geometry = Arc::new(Geometry::new(&trial.scene(case), &LoadCx::unattended()).expect("small"));
+        let cx = BuildCx::unattended(2);
+        let entry = registry::find("kdtree").expect("registered");
+        let accel = entry.build(&geometry, test, &entry.defaults(), &cx).expect("builds");
+        let reference = Reference::build(&geometry, closed, &cx).expect("builds");
+        reference.compare(("kdtree", test), accel.as_ref(), &trial.rays, &cx.pool, &cx.cancel).expect("not cancelled")
+    }
+
+    #[test]
+    fn exact_is_exact_and_watertight_is_right() {
+        let exact = row("shared-edges", TestKind::Exact, true);
+        assert_eq!((exact.rounded, exact.wrong, exact.differing.len()), (0, 0, 0));
+        let watertight = row("shared-edges", TestKind::Watertight, true);
+        assert!(watertight.wrong == 0 && watertight.rounded > 100, "{watertight:?}");
+    }
+
+    #[test]
+    fn fast_slips_through_what_is_closed() {
+        let open = row("shared-edges", TestKind::Fast, false);
+        assert_eq!(open.wrong, 0, "of an open surface rounding explains a miss");
+        let closed = row("shared-edges", TestKind::Fast, true);
+        assert!(closed.wrong > 0 && closed.differing[0].why == Some(Wrong::Slipped), "{} wrong", closed.wrong);
+    }
+}
