@@ -5,6 +5,7 @@
 
 mod args;
 mod bar;
+mod check;
 mod compare;
 mod context;
 mod failure;
@@ -65,6 +66,8 @@ enum Command {
     Peers(peers::Args),
     /// Check every structure and triangle test on scenes that break ray tracers, against exact arithmetic.
     Stability(stability::Args),
+    /// Check a model: slivers, copies, open edges, and where structures err on it, against exact arithmetic.
+    Check(check::Args),
     /// Compare bounding volumes around the nodes of one tree: tightness against cost.
     Volumes(volumes::Args),
     /// Render a picture to a PNG file.
@@ -98,6 +101,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Scaling(args) => scaling::run(&args, cancel),
         Command::Peers(args) => peers::run(&args, cancel),
         Command::Stability(args) => stability::run(&args, cancel),
+        Command::Check(args) => check::run(&args, cancel),
         Command::Volumes(args) => volumes::run(&args, cancel),
         Command::Render(args) => render::run(&args, cancel),
         Command::Rays(args) => rays::run(&args, cancel),

@@ -11,6 +11,8 @@ pub mod format;
 pub mod least_squares;
 mod lines;
 mod measure;
+mod mesh_check;
+mod model_check;
 #[cfg(feature = "peers")]
 pub mod peers;
 mod quality;
@@ -33,6 +35,8 @@ pub use differing::{Differing, differing};
 pub use facts::{MachineFacts, SceneFacts};
 pub use lines::line;
 pub use measure::{Contestant, Fairness, MeasureOptions, measure};
+pub use mesh_check::{Finding, MeshCheck, SLIVER, Sliver, check as check_mesh};
+pub use model_check::{CheckError, Checked, ModelCheck, check_model};
 pub use quality::{Quality, QualityOptions};
 pub use raster::{RasterRow, measure_with_raster};
 pub use rays::{PixelOrder, RayKind, RaySet};
