@@ -13,7 +13,7 @@ use super::options::ViewerOptions;
 use super::pace::Pace;
 use super::panels::{self, Commands};
 use super::screenshot::Screenshot;
-use super::settings::{Settings, ThemeChoice};
+use super::settings::{Settings, ThemeChoice, Workspace};
 use super::state::State;
 use super::theme::{self, Palette};
 use super::workers::Shared;
@@ -115,6 +115,14 @@ impl App {
 
     fn sides(&mut self, ui: &mut Ui) {
         let (state, commands) = (&self.state, &mut self.commands);
+        let workspace = state.settings.workspace;
+        let beside = move |ui: &mut Ui, commands: &mut Commands| match workspace {
+            Workspace::View => {
+                panels::statistics::show(ui, state, commands);
+                panels::selection::show(ui, state, commands);
+            }
+            Workspace::Check => panels::check::show(ui, state, commands),
+        };
         let narrow = ui.available_width() < theme::FOLD_BELOW;
         let id = |name: &str| egui::Id::unique((name, self.layout));
         Panel::left(id("left")).default_size(theme::LEFT_PANEL).resizable(true).show(ui, |ui| {
@@ -128,31 +136,36 @@ impl App {
         });
         if !narrow {
             Panel::right(id("right")).default_size(theme::RIGHT_PANEL).resizable(true).show(ui, |ui| {
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    panels::statistics::show(ui, state, commands);
-                    panels::selection::show(ui, state, commands);
-                });
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| beside(ui, commands));
             });
         } else {
+            let (sign, name) = match workspace {
+                Workspace::View => ("Σ", "Statistics"),
+                Workspace::Check => ("?", "Findings"),
+            };
             Panel::right(id("strip")).exact_size(theme::STRIP).resizable(false).show(ui, |ui| {
-                ui.menu_button("Σ", |ui| {
+                ui.menu_button(sign, |ui| {
                     ui.set_width(theme::RIGHT_PANEL);
-                    panels::statistics::show(ui, state, commands);
-                    panels::selection::show(ui, state, commands);
+                    beside(ui, commands);
                 })
                 .response
-                .accessible_name("Statistics")
-                .on_hover_text("Statistics");
+                .accessible_name(name)
+                .on_hover_text(name);
             });
         }
     }
 
     fn centre(&mut self, ui: &mut Ui) {
-        let id = self.panel("bottom");
+        let (below, height) = match self.state.settings.workspace {
+            Workspace::View => ("timings", theme::BOTTOM_PANEL),
+            Workspace::Check => ("matrix", theme::MATRIX_PANEL),
+        };
+        let id = self.panel(below);
         let (state, commands) = (&self.state, &mut self.commands);
         let mut size_px = state.size_px;
-        Panel::bottom(id).default_size(theme::BOTTOM_PANEL).resizable(true).show(ui, |ui| {
-            panels::timings::show(ui, state, commands);
+        Panel::bottom(id).default_size(height).resizable(true).show(ui, |ui| match state.settings.workspace {
+            Workspace::View => panels::timings::show(ui, state, commands),
+            Workspace::Check => panels::stability::show(ui, state, commands),
         });
         CentralPanel::no_frame().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
@@ -205,7 +218,9 @@ impl eframe::App for App {
             screenshot.advance(ctx, &self.state, &mut self.pace, &mut self.commands);
         }
         // Progress bars move; everything else wakes the window itself.
-        if self.state.loading.is_some() || self.state.building.is_some() || self.state.measuring.is_some() {
+        let (state, checks) = (&self.state, &self.state.checks);
+        let measured = state.measuring.is_some() || checks.running.is_some() || checks.checking.is_some();
+        if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }
     }

@@ -1,7 +1,8 @@
 //! What panels ask for. They never change shared state in the middle of a frame: they send a
 //! command, and [`super::state::State::carry_out`] does it afterwards.
 
-use super::settings::{Navigation, OverlaySettings, ThemeChoice};
+use super::checks::Cell;
+use super::settings::{Navigation, OverlaySettings, ThemeChoice, Workspace};
 use crate::accel::params::ParamValues;
 use crate::geometry::tri::TestKind;
 use crate::render::{Mode, Range};
@@ -57,6 +58,20 @@ pub enum Command {
     Measure,
     /// Stop timing.
     CancelMeasure,
+    /// Another workspace.
+    Workspace(Workspace),
+    /// Run the stability lab.
+    RunLab,
+    /// Stop it.
+    CancelLab,
+    /// Open a case of the lab, as a structure traced it.
+    OpenCase(Cell),
+    /// Look at the open model's triangles, and where structures err on them.
+    CheckModel,
+    /// Stop that.
+    CancelCheck,
+    /// Draw the rays that one of the checked structures does not answer exactly, or none.
+    MarkModel(Option<usize>),
     /// Put away the message.
     Dismiss,
     /// Light, dark, or as the system has it.

@@ -2,6 +2,7 @@
 //! do the long work, [`gpu`] puts the 3D view on the screen.
 
 pub mod app;
+pub mod checks;
 pub mod command;
 pub mod dialogs;
 pub mod format;
@@ -17,6 +18,7 @@ mod overlay;
 mod pace;
 pub mod panels;
 pub mod pick;
+mod rays_over;
 mod rehearsal;
 mod screenshot;
 pub mod settings;

@@ -25,6 +25,8 @@ pub struct Settings {
     pub max_samples: u32,
     /// Boxes and planes.
     pub overlay: OverlaySettings,
+    /// What stands around the view.
+    pub workspace: Workspace,
     /// Light or dark.
     pub theme: ThemeChoice,
     /// Which button does what.
@@ -48,6 +50,7 @@ impl Default for Settings {
             mode: Mode::default(),
             max_samples: 4096,
             overlay: OverlaySettings::default(),
+            workspace: Workspace::default(),
             theme: ThemeChoice::default(),
             navigation: Navigation::default(),
             scale: 1.0,
@@ -95,6 +98,37 @@ impl Default for OverlaySettings {
     }
 }
 
+/// What stands around the view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum Workspace {
+    /// Statistics and timings.
+    #[default]
+    View,
+    /// The stability lab, and what is known to be wrong with the model.
+    Check,
+}
+
+impl Workspace {
+    /// All, in the order of their tabs.
+    pub const ALL: [Self; 2] = [Self::View, Self::Check];
+
+    /// The name on the tab.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::View => "View",
+            Self::Check => "Check",
+        }
+    }
+
+    /// What it is for, in a sentence.
+    pub const fn help(self) -> &'static str {
+        match self {
+            Self::View => "Statistics of the structure, and timings of all of them.",
+            Self::Check => "Right answers: the stability lab, and a check of the open model.",
+        }
+    }
+}
+
 /// Light, dark, or as the system has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum ThemeChoice {
@@ -130,6 +164,11 @@ impl Settings {
             let _ = values.set(id, text); // a value from another version that no longer fits is forgotten
         }
         values
+    }
+
+    /// The triangle test of a structure: the chosen one, or the default if it does not have that.
+    pub fn test_of(&self, entry: &Entry) -> TestKind {
+        entry.tests().find(|test| *test == self.test).unwrap_or_default()
     }
 
     /// Remembers the parameters of a structure, as far as they differ from the defaults.

@@ -37,6 +37,12 @@ pub const LEFT_PANEL: f32 = 232.0;
 pub const RIGHT_PANEL: f32 = 280.0;
 /// The height of the timings below the viewport.
 pub const BOTTOM_PANEL: f32 = 184.0;
+/// The height of the matrix below the viewport.
+pub const MATRIX_PANEL: f32 = 320.0;
+/// The width of the names of cases beside the matrix.
+pub const CASE_NAME: f32 = 28.0 * GRID;
+/// The width of the dark edge around rays that are drawn over the view.
+pub const RAY_HALO: f32 = 3.0;
 /// The height of the bar at the top.
 pub const TOP_BAR: f32 = 32.0;
 /// From this width on the structures and what is shown of them stand in one row above the view.

@@ -2,22 +2,27 @@
 //! overlays, measuring. At most one of each runs.
 
 use std::sync::Arc;
+use std::sync::mpsc::Sender;
 
+use super::checks::{RAYS, SEED};
 use super::kept::{Built, Key};
 use super::model::{self, Model};
 use super::overlay::{self, Collected, Wanted};
 use super::pick::{self, Picked};
+use crate::accel::registry;
 use crate::accel::stats::{SahWeights, Stats};
 use crate::accel::{Accel, BuildCx, BuildError, Cell};
 use crate::geometry::Ray;
+use crate::geometry::tri::TestKind;
 use crate::job::Job;
+use crate::lab::stability::{self, CaseRow, cases};
 use crate::lab::{
-    Contestant, Costs, Enough, FitOptions, MeasureOptions, Quality, QualityOptions, RasterRow, RayKind, RaySet, SahCurves,
-    Timing, fit_costs, measure_with_raster, sah_curves,
+    self, CheckError, Checked, Contestant, Costs, Enough, FitOptions, MeasureOptions, ModelCheck, Quality, QualityOptions,
+    RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure_with_raster, sah_curves,
 };
 use crate::render;
 use crate::scene::{Camera, Geometry, LoadError, Scene};
-use crate::task::{Budget, Cancelled, Pool};
+use crate::task::{Budget, Cancelled, Pool, Progress};
 
 /// What every job needs: threads, memory, and a way to wake the window.
 #[derive(Clone)]
@@ -132,7 +137,7 @@ pub struct Measured {
     /// What steps and tests cost in each, as far as that could be told.
     pub costs: Vec<Option<Costs>>,
     /// Structures that could not be built, and why.
-    pub failed: Vec<(&'static str, String)>,
+    pub failed: Vec<NotBuilt>,
     /// The view, and its size in pixels.
     pub view: Option<(Camera, [u32; 2])>,
 }
@@ -150,38 +155,90 @@ pub struct Plan {
     pub view: render::Job,
     /// Its size in pixels.
     pub size_px: [u32; 2],
-    /// Keeps the renderer from running meanwhile.
-    pub pause: render::progressive::Pause,
 }
 
-/// Starts measuring.
-pub fn measure_all(shared: &Shared, plan: Plan) -> std::io::Result<Measuring> {
-    let Shared { pool, budget, .. } = shared.clone();
-    Job::spawn("measure", shared.waker(), move |cancel, progress| {
-        plan.pause.wait();
-        let view = Some((plan.view.camera, plan.size_px));
-        let mut measured = Measured { built: plan.kept, view, ..Measured::default() };
-        for key in plan.missing {
+/// A structure that could not be built, by its id, and why.
+type NotBuilt = (&'static str, String);
+
+impl Plan {
+    /// Builds what is missing: all structures, and those that could not be built.
+    fn build(self, cx: &BuildCx) -> Result<(Vec<Built>, Vec<NotBuilt>), Cancelled> {
+        let (mut built, mut failed) = (self.kept, Vec::new());
+        for key in self.missing {
             let id = key.entry.id;
-            let cx = BuildCx::new(cancel.clone(), progress.clone(), pool.clone(), budget.clone());
-            match build_now(key, plan.view.accel.geometry(), &cx) {
-                Ok(built) => measured.built.push(built),
+            match build_now(key, self.view.accel.geometry(), cx) {
+                Ok(one) => built.push(one),
                 Err(BuildError::Cancelled(cancelled)) => return Err(cancelled),
-                Err(why) => measured.failed.push((id, why.to_string())),
+                Err(why) => failed.push((id, why.to_string())),
             }
         }
-        let [width, height] = plan.size_px;
-        let rays = RaySet::generate(RayKind::Primary, &plan.view, width, height, &pool, cancel)?;
+        Ok((built, failed))
+    }
+}
+
+/// Starts measuring; the renderer is kept from running meanwhile.
+pub fn measure_all(shared: &Shared, plan: Plan, pause: render::progressive::Pause) -> std::io::Result<Measuring> {
+    let Shared { pool, budget, .. } = shared.clone();
+    Job::spawn("measure", shared.waker(), move |cancel, progress| {
+        pause.wait();
+        let (view, size_px) = (plan.view.clone(), plan.size_px);
+        let (built, failed) = plan.build(&BuildCx::new(cancel.clone(), progress.clone(), pool.clone(), budget))?;
+        let mut measured = Measured { built, failed, view: Some((view.camera, size_px)), ..Measured::default() };
+        let [width, height] = size_px;
+        let rays = RaySet::generate(RayKind::Primary, &view, width, height, &pool, cancel)?;
         let contestant = |b: &Built| Contestant { id: b.key.entry.id.to_owned(), accel: Arc::clone(&b.accel) };
         let contestants: Vec<Contestant> = measured.built.iter().map(contestant).collect();
         let options = MeasureOptions::default();
-        let race = measure_with_raster(&contestants, &rays, &plan.view, plan.size_px, &options, &pool, cancel, progress);
+        let race = measure_with_raster(&contestants, &rays, &view, size_px, &options, &pool, cancel, progress);
         let (timings, raster) = race?;
         (measured.timings, measured.raster) = (timings, Some(raster));
         // Lines beside the view's rays: the more the rays differ, the better the costs are told apart.
-        let lines = RaySet::lines(plan.view.accel.geometry(), 1 << 16, &pool, cancel)?;
+        let lines = RaySet::lines(view.accel.geometry(), 1 << 16, &pool, cancel)?;
         let options = FitOptions { cap_secs: 2.0, ..FitOptions::default() };
         measured.costs = fit_costs(&contestants, &[&rays, &lines], &options, &pool, cancel, progress)?;
         Ok(measured)
+    })
+}
+
+/// The stability lab on its way.
+pub type Stability = Job<Result<(), CheckError>>;
+
+/// Starts the lab: all cases, structures and tests; each case is sent as soon as it is through.
+pub fn stability(shared: &Shared, through: Sender<CaseRow>) -> std::io::Result<Stability> {
+    let Shared { pool, budget, wake } = shared.clone();
+    Job::spawn("stability", shared.waker(), move |cancel, progress| {
+        let tests = TestKind::ALL.into_iter().chain(TestKind::OTHERS).collect();
+        let structures = registry::ALL.iter().collect();
+        let options = stability::Options { seed: SEED, rays: RAYS, structures, tests, secs: 1e-3 };
+        progress.start("cases", (cases::ALL.len() * options.pairs().count()) as u64);
+        for case in cases::ALL {
+            // Builds have phases of their own, which are not told.
+            let cx = BuildCx::new(cancel.clone(), Progress::new(), pool.clone(), budget.clone());
+            let row = stability::check_case(case, &options, &cx, &|| progress.advance(1))?;
+            // Nobody listens once the window is closed, and then this is cancelled as well.
+            let _ = through.send(row);
+            wake();
+        }
+        Ok(())
+    })
+}
+
+/// The check of a model on its way, and the structures that were built for it.
+pub type Checking = Job<Result<(ModelCheck, Vec<Built>), CheckError>>;
+
+/// Starts checking the open model with every structure.
+pub fn check_model(shared: &Shared, plan: Plan) -> std::io::Result<Checking> {
+    let Shared { pool, budget, .. } = shared.clone();
+    Job::spawn("check", shared.waker(), move |cancel, progress| {
+        let cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
+        let (view, [width, height]) = (plan.view.clone(), plan.size_px);
+        // What cannot be built has no row; choosing it says why.
+        let (built, _) = plan.build(&cx)?;
+        let checked = |b: &Built| Checked { id: b.key.entry.id.to_owned(), test: b.key.test, accel: Arc::clone(&b.accel) };
+        let structures: Vec<Checked> = built.iter().map(checked).collect();
+        // Half of the pixels on either axis: brute force is among the structures.
+        let size = [width.div_ceil(2), height.div_ceil(2)];
+        let check = lab::check_model(view.accel.geometry(), &structures, &view, size, &cx)?;
+        Ok((check, built))
     })
 }

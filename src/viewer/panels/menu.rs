@@ -1,11 +1,11 @@
 //! The bar at the top: File, Edit, View, Window, Help.
 
-use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, Ui};
+use eframe::egui::{self, Align, Key, KeyboardShortcut, Layout, MenuBar, Modifiers, Ui};
 
 use super::Commands;
 use crate::scene::builtin;
 use crate::viewer::command::Command;
-use crate::viewer::settings::{Navigation, SCALE, ThemeChoice};
+use crate::viewer::settings::{Navigation, SCALE, ThemeChoice, Workspace};
 use crate::viewer::state::State;
 
 /// Keys that work everywhere, and what they do.
@@ -26,6 +26,10 @@ pub const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus
 pub const CAMERA_BACK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowLeft);
 /// And forward again.
 pub const CAMERA_FORWARD: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowRight);
+/// Statistics and timings around the view.
+pub const VIEW: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F1);
+/// The stability lab and the model's check around it.
+pub const CHECK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F5);
 /// In and out of full screen.
 pub const FULL_SCREEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F11);
 /// Larger, smaller, as the system has it.
@@ -49,6 +53,17 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         ui.menu_button("Help", |ui| {
             if ui.button("Keys and mouse").clicked() {
                 commands.push(Command::Help(true));
+            }
+        });
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for workspace in Workspace::ALL.into_iter().rev() {
+                let chosen = state.settings.workspace == workspace;
+                let tab = ui.add(egui::Button::selectable(chosen, workspace.name()));
+                // A menu has the same name.
+                let tab = tab.accessible_name(format!("{} workspace", workspace.name()));
+                if tab.on_hover_text(workspace.help()).clicked() {
+                    commands.push(Command::Workspace(workspace));
+                }
             }
         });
     });
@@ -75,6 +90,8 @@ pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
     on(&CAMERA_FORWARD, Command::CameraForward);
     on(&FRAME_ALL, Command::FrameAll);
     on(&PROJECTION, Command::ToggleProjection);
+    on(&VIEW, Command::Workspace(Workspace::View));
+    on(&CHECK, Command::Workspace(Workspace::Check));
     on(&FULL_SCREEN, Command::FullScreen);
     on(&LARGER, Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
     on(&LARGER_UNSHIFTED, Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
@@ -92,6 +109,8 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.asking.is_some(), Command::AskForPath(false)),
         (state.measuring.is_some(), Command::CancelMeasure),
         (state.building.is_some(), Command::CancelBuild),
+        (state.checks.checking.is_some(), Command::CancelCheck),
+        (state.checks.running.is_some(), Command::CancelLab),
         (state.loading.is_some(), Command::CancelLoad),
         (state.error.is_some(), Command::Dismiss),
     ];

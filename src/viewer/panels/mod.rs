@@ -3,6 +3,7 @@
 
 pub mod bars;
 pub mod captions;
+pub mod check;
 pub mod help;
 pub mod menu;
 pub mod overlay;
@@ -10,6 +11,7 @@ pub mod path;
 pub mod prediction;
 pub mod scene;
 pub mod selection;
+pub mod stability;
 pub mod statistics;
 pub mod status;
 pub mod structure;

@@ -41,9 +41,12 @@ fn choice(ui: &mut Ui, state: &State, commands: &mut Commands) {
 }
 
 fn test(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    ui.horizontal(|ui| {
-        for kind in TestKind::ALL {
-            if ui.radio(state.settings.test == kind, kind.name()).on_hover_text(kind.help()).clicked() {
+    ui.horizontal_wrapped(|ui| {
+        // The others are shown only while one of them is chosen, by a case of the stability lab.
+        let test = state.settings.test_of(state.settings.entry());
+        let other = TestKind::OTHERS.into_iter().filter(|kind| *kind == test);
+        for kind in TestKind::ALL.into_iter().chain(other) {
+            if ui.radio(test == kind, kind.name()).on_hover_text(kind.help()).clicked() {
                 commands.push(Command::Test(kind));
             }
         }

@@ -10,6 +10,7 @@ use crate::scene::Camera;
 use crate::viewer::command::Command;
 use crate::viewer::gpu::{self, Base, DrawList, Raster, View};
 use crate::viewer::navigation;
+use crate::viewer::rays_over;
 use crate::viewer::settings::Navigation;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
@@ -63,8 +64,9 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
         }),
     };
     let overlay = state.shown.as_ref().and(state.overlay.clone());
+    let view = View::new(&camera, model.geometry.space(), aspect);
     let list = DrawList {
-        view: View::new(&camera, model.geometry.space(), aspect),
+        view,
         size_px,
         pixels_per_point,
         background: palette.background.to_array(),
@@ -73,6 +75,7 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
         hidden_lines: state.settings.overlay.hidden_lines,
     };
     gpu::paint(ui.painter(), rect, PANE, list);
+    rays_over::paint(&ui.painter_at(rect), rect, &state.checks.marks, &view, model.geometry.space(), palette);
     let (there, all) = model.raster.progress();
     if state.picture.is_none() && there < all {
         ui.ctx().request_repaint();

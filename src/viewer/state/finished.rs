@@ -9,7 +9,7 @@ use crate::accel::stats::SahWeights;
 use crate::job::Outcome;
 use crate::scene::CameraSpec;
 use crate::viewer::history::{Choices, History, Kind};
-use crate::viewer::model::Model;
+use crate::viewer::model::{self, Model};
 use crate::viewer::pick::Picked;
 use crate::viewer::timings::Timings;
 use crate::viewer::workers;
@@ -35,7 +35,9 @@ impl State {
     }
 
     fn opened(&mut self, name: &str, model: Model) {
-        self.settings.opened(name);
+        if !model::is_case(name) {
+            self.settings.opened(name);
+        }
         let spec = self.first_camera.take();
         self.camera = CameraSpec::or_first(spec.as_ref(), &model.scene, &model.geometry, self.aspect());
         self.framed = spec.is_none().then_some((self.camera, self.size_px));
@@ -47,6 +49,10 @@ impl State {
         (self.cameras, self.choices) = (History::default(), History::default());
         self.kept.clear();
         self.timings = Timings::default();
+        self.checks.opened();
+        if self.checks.selected.is_some_and(|cell| model::case_name(cell.case) == name) {
+            self.checks.mark_case(&model.rays);
+        }
         self.range = None;
         self.renderer.clear();
         self.model = Some(model);

@@ -1,6 +1,7 @@
 //! What the window knows, and how commands change it; `finished` is what finished jobs change, and
 //! `refresh` what is asked for anew when the view changes. No drawing here.
 
+mod checking;
 mod dialog;
 mod finished;
 mod refresh;
@@ -10,6 +11,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
+use super::checks::Checks;
 use super::command::Command;
 use super::dialogs::FileDialog;
 use super::gpu::Overlay;
@@ -58,6 +60,8 @@ pub struct State {
     pub collected: Collected,
     /// The table of timings.
     pub timings: Timings,
+    /// The Check workspace.
+    pub checks: Checks,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -158,6 +162,7 @@ impl State {
             overlay: None,
             collected: Collected::default(),
             timings: Timings::default(),
+            checks: Checks::default(),
             picked: None,
             error: None,
             answer: None,
@@ -195,7 +200,7 @@ impl State {
     /// The key of the structure that is chosen.
     pub fn wanted_key(&self) -> Key {
         let entry = self.settings.entry();
-        Key { entry, params: self.settings.params_of(entry), test: self.settings.test }
+        Key { entry, params: self.settings.params_of(entry), test: self.settings.test_of(entry) }
     }
 
     /// Whether work that must not be disturbed runs.
@@ -278,6 +283,13 @@ impl State {
             Command::ToggleProjection => self.look(navigation::toggle_projection(&self.camera), Kind::Single),
             Command::MaxSamples(n) => self.settings.max_samples = n.max(1),
             Command::Measure => self.measure(),
+            Command::Workspace(workspace) => self.settings.workspace = workspace,
+            Command::RunLab => self.run_lab(),
+            Command::CancelLab => self.checks.running = None,
+            Command::OpenCase(cell) => self.open_case(cell),
+            Command::CheckModel => self.check_model(),
+            Command::CancelCheck => self.checks.checking = None,
+            Command::MarkModel(which) => self.checks.mark_model(which),
             Command::Dismiss => self.error = None,
             Command::Theme(theme) => self.settings.theme = theme,
             Command::Navigation(navigation) => self.settings.navigation = navigation,
@@ -394,12 +406,13 @@ impl State {
         }
     }
 
-    fn measure(&mut self) {
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
+    /// Every structure over the open model, those that are kept and those to be built, and the present view.
+    fn plan(&mut self) -> Option<Plan> {
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return None };
         let wanted = crate::accel::registry::ALL.iter().map(|entry| Key {
             entry,
             params: self.settings.params_of(entry),
-            test: self.settings.test,
+            test: self.settings.test_of(entry),
         });
         let (mut kept, mut missing) = (Vec::new(), Vec::new());
         for key in wanted {
@@ -415,8 +428,12 @@ impl State {
             mode: Mode::Shaded,
         };
         self.building = None;
-        let plan = Plan { kept, missing, view, size_px: self.size_px, pause: self.renderer.pause() };
-        match workers::measure_all(&self.shared, plan) {
+        Some(Plan { kept, missing, view, size_px: self.size_px })
+    }
+
+    fn measure(&mut self) {
+        let Some(plan) = self.plan() else { return };
+        match workers::measure_all(&self.shared, plan, self.renderer.pause()) {
             Ok(job) => self.measuring = Some(job),
             Err(e) => self.fail(format!("Can't measure: {e}.")),
         }
@@ -430,6 +447,8 @@ impl State {
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();
+        self.advance_lab();
+        self.advance_check();
         self.follow_viewport();
         self.refresh_picture();
         self.advance_statistics();

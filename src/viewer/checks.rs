@@ -1,0 +1,113 @@
+//! What the Check workspace knows: the matrix of the stability lab as it fills, what was found out about the open model,
+//! and the rays that are drawn over the view.
+
+use std::sync::mpsc::Receiver;
+
+use super::workers::{Checking, Stability};
+use crate::geometry::Ray;
+use crate::geometry::tri::TestKind;
+use crate::lab::ModelCheck;
+use crate::lab::stability::cases::{self, Case};
+use crate::lab::stability::{CaseRow, Row};
+
+/// Makes the scenes and rays of the lab in the window.
+pub const SEED: u64 = 1;
+/// About so many rays a case: fewer than on the command line, so that the matrix is full within a minute or two.
+pub const RAYS: usize = 400;
+
+/// Everything of the workspace.
+#[derive(Default)]
+pub struct Checks {
+    /// Cases that are through, in their order.
+    pub cases: Vec<CaseRow>,
+    /// The lab, while it runs, and where it puts cases that are through.
+    pub running: Option<(Stability, Receiver<CaseRow>)>,
+    /// The cell that was clicked.
+    pub selected: Option<Cell>,
+    /// What was found out about the open model.
+    pub model: Option<ModelCheck>,
+    /// Which of its structures has its rays marked.
+    pub marked: Option<usize>,
+    /// The check of the open model, while it runs.
+    pub checking: Option<Checking>,
+    /// What is drawn over the view.
+    pub marks: Vec<Mark>,
+}
+
+/// A cell of the matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cell {
+    /// The case's id.
+    pub case: &'static str,
+    /// The structure's.
+    pub structure: &'static str,
+    /// The triangle test.
+    pub test: TestKind,
+}
+
+/// A ray that is drawn over the view, in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// The ray.
+    pub ray: Ray,
+    /// Where it is known to end; infinite where nothing is hit.
+    pub t: f32,
+    /// What it stands for.
+    pub kind: MarkKind,
+}
+
+/// What a marked ray stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MarkKind {
+    /// Answered wrongly.
+    Wrong,
+    /// Answered as rounding may have it.
+    Rounded,
+    /// One of a case's rays that are all answered rightly.
+    Plain,
+}
+
+/// Rays of a case that are drawn where none is wrong.
+const EXAMPLES: usize = 16;
+
+impl Checks {
+    /// The case and the row of a cell, if that case is through.
+    pub fn row(&self, cell: Cell) -> Option<(&'static Case, &Row)> {
+        let case = cases::find(cell.case)?;
+        let rows = &self.cases.iter().find(|row| row.id == cell.case)?.structures;
+        Some((case, rows.iter().find(|row| row.id == cell.structure && row.test == cell.test)?))
+    }
+
+    /// Forgets what was of the model before.
+    pub fn opened(&mut self) {
+        (self.model, self.checking, self.marked) = (None, None, None);
+        self.marks.clear();
+    }
+
+    /// Draws a cell's wrong rays; where there is none, some of the case's, so that one sees what it is about.
+    pub fn mark_case(&mut self, rays: &[Ray]) {
+        let Some((_, row)) = self.selected.and_then(|cell| self.row(cell)) else { return };
+        let of = |ray: &Ray, kind| Mark { ray: *ray, t: f32::INFINITY, kind };
+        let wrong = row.wrong.iter().filter_map(|wrong| rays.get(wrong.ray)).map(|ray| of(ray, MarkKind::Wrong));
+        let mut marks: Vec<Mark> = wrong.collect();
+        if marks.is_empty() {
+            let step = rays.len().div_ceil(EXAMPLES).max(1);
+            marks.extend(rays.iter().step_by(step).filter(|ray| ray.is_valid()).map(|ray| of(ray, MarkKind::Plain)));
+        }
+        self.marks = marks;
+    }
+
+    /// Draws the rays that one of the checked structures does not answer exactly, or none.
+    pub fn mark_model(&mut self, which: Option<usize>) {
+        self.marked = which;
+        let Some((check, row)) = self.model.as_ref().and_then(|check| Some((check, check.structures.get(which?)?))) else {
+            self.marks.clear();
+            return;
+        };
+        let mark = |ray: &crate::lab::stability::DifferingRay| {
+            let kind = if ray.why.is_some() { MarkKind::Wrong } else { MarkKind::Rounded };
+            Some(Mark { ray: *check.rays.get(ray.ray)?, t: ray.t, kind })
+        };
+        self.marks = row.differing.iter().filter_map(mark).collect();
+    }
+}
