@@ -223,7 +223,9 @@ fn text(outcome: &Outcome) -> String {
         for row in &case.structures {
             table.row(cells(case, row));
             if let Some(error) = &row.error {
-                notes += &format!("{}, {}: {error}\n", case.id, row.id);
+                let note = format!("{}, {}: {error}\n", case.id, row.id);
+                // It is the same with every triangle test.
+                notes += if notes.contains(&note) { "" } else { &note };
             }
         }
     }
@@ -272,6 +274,7 @@ const LEGEND: &str = "\nnear: rays whose answer is a matter of rounding. boundar
 fn cells(case: &CaseRow, row: &Row) -> Vec<String> {
     let share = |n: usize| percent(n as f64 / row.rays.max(1) as f64);
     let verdict = match row.verdict {
+        Verdict::Pass if row.error.is_some() => "refused",
         Verdict::Pass => "pass",
         Verdict::Warn => "warn",
         Verdict::Fail => "FAIL",

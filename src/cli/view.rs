@@ -47,6 +47,9 @@ pub struct Args {
     /// Measure every structure before the picture is saved.
     #[arg(long, requires = "screenshot")]
     pub measure: bool,
+    /// Begin in the Check workspace; with --screenshot, run the stability lab and open the first case that rays slip through.
+    #[arg(long, conflicts_with = "measure")]
+    pub check: bool,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
@@ -73,6 +76,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         theme,
         size: args.size.map(|size| [size.width as f32, size.height as f32]),
         measure: args.measure,
+        check: args.check,
         pace: args.pace,
         screenshot: args.screenshot,
         threads: args.machine.threads,

@@ -23,7 +23,7 @@
 //! of the difference, the reciprocal and the product. With E|n| that is less than
 //! `(48uD + 8u|o|)|n|`, which is [`Line`]'s pad: four times that of [`Slabs`].
 
-use super::num::UNIT_ROUNDOFF;
+use super::num::{UNIT_ROUNDOFF, max, min};
 use super::{Aabb, Ray, Slabs};
 use glam::Vec3;
 
@@ -121,16 +121,6 @@ impl Through {
         let (a, b) = ((lo - self.lo) * self.inv, (hi - self.hi) * self.inv);
         (min(a, b), max(a, b))
     }
-}
-
-#[inline(always)]
-fn min(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn max(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// What two intervals have in common; empty when the first exceeds the second.

@@ -25,6 +25,18 @@ pub fn floor_index(x: f64, max: usize) -> usize {
     (x as usize).min(max)
 }
 
+/// The lesser, in one instruction; the second if one is no number.
+#[inline(always)]
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The greater, likewise.
+#[inline(always)]
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
 /// The unit roundoff of 32-bit floats: half the distance from 1 to the next float.
 pub const UNIT_ROUNDOFF: f32 = f32::EPSILON / 2.0;
 

@@ -14,7 +14,7 @@
 //! rounded by u|o|. `e = 12uD + 2u|o|` covers them all with room for the second-order terms.
 
 use super::eight::{Points, Rays};
-use super::num::UNIT_ROUNDOFF;
+use super::num::{UNIT_ROUNDOFF, max, min};
 use super::{Aabb, Ray};
 use crate::simd::Simd;
 use glam::{Vec3, Vec3A};
@@ -203,16 +203,6 @@ impl<F: Copy> EightSlabs<F> {
 fn inverse<S: Simd>(s: S, dir: S::F) -> S::F {
     let parallel = s.lt(s.abs(dir), s.splat(PARALLEL));
     s.select(parallel, s.splat(PARALLEL_INV), s.div(s.splat(1.0), dir))
-}
-
-#[inline(always)]
-fn min(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn max(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 #[cfg(test)]

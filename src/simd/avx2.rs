@@ -53,6 +53,9 @@ impl Simd for Avx2 {
     type F = __m256;
     type M = __m256;
     type I = __m256i;
+    type D = [__m256d; 2];
+
+    const DOUBLES: bool = true;
 
     #[inline(always)]
     fn run<K: Kernel>(self, kernel: K) -> K::Out {
@@ -190,6 +193,80 @@ impl Simd for Avx2 {
     fn bits(self, m: __m256) -> u32 {
         // SAFETY: as in `run`.
         unsafe { _mm256_movemask_ps(m).cast_unsigned() }
+    }
+
+    #[inline(always)]
+    fn widen(self, x: __m256) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe { [_mm256_cvtps_pd(_mm256_castps256_ps128(x)), _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(x))] }
+    }
+
+    #[inline(always)]
+    fn narrow(self, [a, b]: [__m256d; 2]) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe { _mm256_set_m128(_mm256_cvtpd_ps(b), _mm256_cvtpd_ps(a)) }
+    }
+
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe { [_mm256_set1_pd(x); 2] }
+    }
+
+    #[inline(always)]
+    fn add_double(self, [a, b]: [__m256d; 2], [c, d]: [__m256d; 2]) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe { [_mm256_add_pd(a, c), _mm256_add_pd(b, d)] }
+    }
+
+    #[inline(always)]
+    fn sub_double(self, [a, b]: [__m256d; 2], [c, d]: [__m256d; 2]) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe { [_mm256_sub_pd(a, c), _mm256_sub_pd(b, d)] }
+    }
+
+    #[inline(always)]
+    fn mul_double(self, [a, b]: [__m256d; 2], [c, d]: [__m256d; 2]) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe { [_mm256_mul_pd(a, c), _mm256_mul_pd(b, d)] }
+    }
+
+    #[inline(always)]
+    fn div_double(self, [a, b]: [__m256d; 2], [c, d]: [__m256d; 2]) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe { [_mm256_div_pd(a, c), _mm256_div_pd(b, d)] }
+    }
+
+    #[inline(always)]
+    fn min_double(self, [a, b]: [__m256d; 2], [c, d]: [__m256d; 2]) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe { [_mm256_min_pd(a, c), _mm256_min_pd(b, d)] }
+    }
+
+    #[inline(always)]
+    fn max_double(self, [a, b]: [__m256d; 2], [c, d]: [__m256d; 2]) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe { [_mm256_max_pd(a, c), _mm256_max_pd(b, d)] }
+    }
+
+    #[inline(always)]
+    fn abs_double(self, [a, b]: [__m256d; 2]) -> [__m256d; 2] {
+        // SAFETY: as in `run`.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            [_mm256_andnot_pd(sign, a), _mm256_andnot_pd(sign, b)]
+        }
+    }
+
+    #[inline(always)]
+    fn lt_double(self, [a, b]: [__m256d; 2], [c, d]: [__m256d; 2]) -> __m256 {
+        // SAFETY: as in `run`.
+        unsafe {
+            let (low, high) = (_mm256_cmp_pd::<_CMP_LT_OQ>(a, c), _mm256_cmp_pd::<_CMP_LT_OQ>(b, d));
+            // Half of each mask of 64 bits, and the four pairs in order.
+            let halves = _mm256_shuffle_ps::<0x88>(_mm256_castpd_ps(low), _mm256_castpd_ps(high));
+            _mm256_castpd_ps(_mm256_permute4x64_pd::<0xD8>(_mm256_castps_pd(halves)))
+        }
     }
 
     #[inline(always)]

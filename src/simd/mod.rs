@@ -43,6 +43,11 @@ pub trait Simd: Copy + Send + Sync + 'static {
     type M: Copy;
     /// Eight numbers of lanes, 0 to 7.
     type I: Copy;
+    /// Eight floats of 64 bits.
+    type D: Copy;
+
+    /// Whether eight lanes of 64 bits are more than a way to write loops.
+    const DOUBLES: bool;
 
     /// Compiles a kernel for this road and runs it.
     fn run<K: Kernel>(self, kernel: K) -> K::Out;
@@ -96,6 +101,29 @@ pub trait Simd: Copy + Send + Sync + 'static {
     fn or(self, a: Self::M, b: Self::M) -> Self::M;
     /// One bit for each lane.
     fn bits(self, m: Self::M) -> u32;
+
+    /// The same numbers in 64 bits.
+    fn widen(self, x: Self::F) -> Self::D;
+    /// Rounded to 32 bits, to the nearest, ties to even.
+    fn narrow(self, x: Self::D) -> Self::F;
+    /// The same float in all lanes.
+    fn splat_double(self, x: f64) -> Self::D;
+    /// The sum.
+    fn add_double(self, a: Self::D, b: Self::D) -> Self::D;
+    /// The difference.
+    fn sub_double(self, a: Self::D, b: Self::D) -> Self::D;
+    /// The product.
+    fn mul_double(self, a: Self::D, b: Self::D) -> Self::D;
+    /// The quotient.
+    fn div_double(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `a < b ? a : b`.
+    fn min_double(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `a > b ? a : b`.
+    fn max_double(self, a: Self::D, b: Self::D) -> Self::D;
+    /// Without the sign.
+    fn abs_double(self, x: Self::D) -> Self::D;
+    /// Where `a < b`.
+    fn lt_double(self, a: Self::D, b: Self::D) -> Self::M;
 
     /// Eight whole numbers from memory, as floats of the same value.
     fn load_shorts(self, from: &[u16; LANES]) -> Self::F;

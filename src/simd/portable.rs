@@ -17,6 +17,15 @@ fn each(f: impl Fn(usize) -> f32) -> Lanes {
 }
 
 #[inline(always)]
+fn doubles(f: impl Fn(usize) -> f64) -> [f64; LANES] {
+    let mut lanes = [0.0; LANES];
+    for (i, lane) in lanes.iter_mut().enumerate() {
+        *lane = f(i);
+    }
+    lanes
+}
+
+#[inline(always)]
 fn mask(f: impl Fn(usize) -> bool) -> u32 {
     let mut bits = [0u32; LANES];
     for (i, bit) in bits.iter_mut().enumerate() {
@@ -29,6 +38,9 @@ impl Simd for Portable {
     type F = Lanes;
     type M = u32;
     type I = [u8; LANES];
+    type D = [f64; LANES];
+
+    const DOUBLES: bool = false;
 
     // Not inlined: compiled once, whoever asks for it.
     #[inline(never)]
@@ -144,6 +156,61 @@ impl Simd for Portable {
     #[inline(always)]
     fn bits(self, m: u32) -> u32 {
         m
+    }
+
+    #[inline(always)]
+    fn widen(self, x: Lanes) -> [f64; LANES] {
+        doubles(|i| f64::from(x[i]))
+    }
+
+    #[inline(always)]
+    fn narrow(self, x: [f64; LANES]) -> Lanes {
+        each(|i| x[i] as f32)
+    }
+
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> [f64; LANES] {
+        [x; LANES]
+    }
+
+    #[inline(always)]
+    fn add_double(self, a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+        doubles(|i| a[i] + b[i])
+    }
+
+    #[inline(always)]
+    fn sub_double(self, a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+        doubles(|i| a[i] - b[i])
+    }
+
+    #[inline(always)]
+    fn mul_double(self, a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+        doubles(|i| a[i] * b[i])
+    }
+
+    #[inline(always)]
+    fn div_double(self, a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+        doubles(|i| a[i] / b[i])
+    }
+
+    #[inline(always)]
+    fn min_double(self, a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+        doubles(|i| if a[i] < b[i] { a[i] } else { b[i] })
+    }
+
+    #[inline(always)]
+    fn max_double(self, a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+        doubles(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+
+    #[inline(always)]
+    fn abs_double(self, x: [f64; LANES]) -> [f64; LANES] {
+        x.map(f64::abs)
+    }
+
+    #[inline(always)]
+    fn lt_double(self, a: [f64; LANES], b: [f64; LANES]) -> u32 {
+        mask(|i| a[i] < b[i])
     }
 
     #[inline(always)]

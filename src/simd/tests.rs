@@ -14,6 +14,9 @@ impl Kernel for Everything {
         let mut out = Vec::new();
         let bytes = self.0[0].map(|x| x.to_bits() as u8);
         let i = s.indices(&bytes);
+        // Numbers that 32 bits do not hold.
+        let x = s.mul_double(s.widen(a), s.splat_double(1.0 / 3.0));
+        let y = s.add_double(s.widen(b), s.splat_double(f64::EPSILON));
         let columns = s.transpose([a, b, a, a, b, b, a, b]);
         let results = [
             s.add(a, b),
@@ -33,6 +36,14 @@ impl Kernel for Everything {
             s.abs(a),
             s.select(s.lt(a, b), a, b),
             s.load_shorts(&self.0[0].map(|x| x.to_bits() as u16)),
+            s.narrow(s.add_double(x, y)),
+            s.narrow(s.sub_double(x, y)),
+            s.narrow(s.mul_double(x, y)),
+            s.narrow(s.div_double(x, y)),
+            s.narrow(s.min_double(x, y)),
+            s.narrow(s.max_double(x, y)),
+            s.narrow(s.abs_double(x)),
+            s.narrow(s.splat_double(self.0[0][3].into())),
         ];
         // All but the last, and all: the last of a list may be fetched in another way.
         let points: Vec<Vec3> = self.0[0].iter().zip(self.0[1]).map(|(a, b)| Vec3::new(*a, b, a + b)).collect();
@@ -46,6 +57,7 @@ impl Kernel for Everything {
             out.extend(floats.map(|x| if x.is_nan() { 1 } else { x.to_bits() }));
             out.extend(bits.map(|x| if f32::from_bits(x).is_nan() { 1 } else { x }));
         }
+        out.push(s.bits(s.lt_double(x, y)));
         let (le, lt, eq) = (s.le(a, b), s.lt(a, b), s.eq(a, b));
         out.extend([s.bits(le), s.bits(lt), s.bits(eq), s.bits(s.and(le, lt)), s.bits(s.or(lt, eq))]);
         out

@@ -68,7 +68,8 @@ impl App {
         let mut state = State::new(settings, shared, dialog, Graphics::of(cc.wgpu_render_state.as_ref()))?;
         state.first_camera = options.camera;
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
-        let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, options.measure, options.pace));
+        let screenshot =
+            options.screenshot.clone().map(|path| Screenshot::new(path, options.measure, options.check, options.pace));
         let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout: 0 };
         app.follow_settings(&cc.egui_ctx);
         Ok(app)

@@ -8,7 +8,7 @@ use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::lab::ModelCheck;
 use crate::lab::stability::cases::{self, Case};
-use crate::lab::stability::{CaseRow, Row};
+use crate::lab::stability::{CaseRow, Row, Verdict};
 
 /// Makes the scenes and rays of the lab in the window.
 pub const SEED: u64 = 1;
@@ -76,6 +76,13 @@ impl Checks {
         let case = cases::find(cell.case)?;
         let rows = &self.cases.iter().find(|row| row.id == cell.case)?.structures;
         Some((case, rows.iter().find(|row| row.id == cell.structure && row.test == cell.test)?))
+    }
+
+    /// The first cell that rays slip through.
+    pub fn first_slip(&self) -> Option<Cell> {
+        let rows = self.cases.iter().flat_map(|case| case.structures.iter().map(move |row| (case.id, row)));
+        let slips = rows.into_iter().find(|(_, row)| row.verdict == Verdict::Warn);
+        slips.map(|(case, row)| Cell { case, structure: row.id, test: row.test })
     }
 
     /// Forgets what was of the model before.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::settings::{Settings, ThemeChoice};
+use super::settings::{Settings, ThemeChoice, Workspace};
 use crate::render::Mode;
 use crate::scene::CameraSpec;
 
@@ -31,6 +31,8 @@ pub struct ViewerOptions {
     pub size: Option<[f32; 2]>,
     /// Measure every structure once the picture is there; only with `screenshot`.
     pub measure: bool,
+    /// Begin in the Check workspace; with `screenshot`, run the lab first.
+    pub check: bool,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
     /// Save a picture of the window here once everything is there, and close.
@@ -55,6 +57,9 @@ impl ViewerOptions {
         settings.mode = self.mode.unwrap_or(settings.mode);
         settings.max_samples = self.samples.unwrap_or(settings.max_samples);
         settings.theme = self.theme.unwrap_or(settings.theme);
+        if self.check {
+            settings.workspace = Workspace::Check;
+        }
         let overlay = &mut settings.overlay;
         if let Some(depth) = self.depth {
             (overlay.depth, overlay.from_depth, overlay.boxes) = (depth, depth, true);

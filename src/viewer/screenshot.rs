@@ -20,6 +20,7 @@ use crate::sys::{folder_of, temporary_in};
 pub struct Screenshot {
     path: PathBuf,
     measure: bool,
+    check: bool,
     rehearsal: Option<Rehearsal>,
     stage: Stage,
     start: Instant,
@@ -35,6 +36,8 @@ enum Stage {
     Rehearsing,
     /// Timing every structure.
     Measuring,
+    /// Running the stability lab.
+    Checking,
     /// Frames in which nothing is left to do; a few, so that the last one is on the screen.
     Still(u32),
     /// The window was asked for its picture.
@@ -48,10 +51,10 @@ const STILL_FRAMES: u32 = 4;
 const PATIENCE: Duration = Duration::from_secs(600);
 
 impl Screenshot {
-    /// A picture for `path`, after measuring and trying how soon the window answers, if asked for.
-    pub fn new(path: PathBuf, measure: bool, pace: bool) -> Self {
+    /// A picture for `path`, after measuring or checking, and trying how soon the window answers, if asked for.
+    pub fn new(path: PathBuf, measure: bool, check: bool, pace: bool) -> Self {
         let rehearsal = pace.then(Rehearsal::default);
-        Self { path, measure, rehearsal, stage: Stage::Settling, start: Instant::now(), taken: Arc::default() }
+        Self { path, measure, check, rehearsal, stage: Stage::Settling, start: Instant::now(), taken: Arc::default() }
     }
 
     /// Looks whether it is time, once a frame.
@@ -68,6 +71,14 @@ impl Screenshot {
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
                 self.stage = Stage::Measuring;
+            }
+            Stage::Settling if settled && self.check => {
+                commands.push(Command::RunLab);
+                (self.check, self.stage) = (false, Stage::Checking);
+            }
+            Stage::Checking if state.checks.running.is_none() && !state.checks.cases.is_empty() => {
+                commands.extend(state.checks.first_slip().map(Command::OpenCase));
+                self.stage = Stage::Settling;
             }
             Stage::Measuring if settled && state.timings.view.is_some() => self.stage = Stage::Still(0),
             Stage::Settling if settled && !self.measure => self.stage = Stage::Still(0),
@@ -90,7 +101,7 @@ impl Screenshot {
                     ctx.send_viewport_cmd(ViewportCommand::Close);
                 }
             }
-            Stage::Settling | Stage::Measuring | Stage::Done => {}
+            Stage::Settling | Stage::Measuring | Stage::Checking | Stage::Done => {}
         }
     }
 }

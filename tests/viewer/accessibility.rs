@@ -42,6 +42,13 @@ fn everything_that_can_be_used_has_a_name() {
     w.key(Modifiers::NONE, Key::Escape);
     w.key(Modifiers::NONE, Key::Questionmark);
     all_named(&mut w, "the page of keys");
+    w.key(Modifiers::NONE, Key::Escape);
+    w.key(Modifiers::NONE, Key::F5);
+    all_named(&mut w, "the Check workspace");
+    w.button("Run the lab");
+    w.until("a case", |s| !s.checks.cases.is_empty());
+    w.button("Cancel");
+    all_named(&mut w, "the matrix");
 }
 
 #[test]

@@ -178,6 +178,35 @@ fn no_text_is_cut_off_in_a_full_table() {
 }
 
 #[test]
+fn no_text_is_cut_off_in_the_check_workspace() {
+    let mut wrong = Vec::new();
+    for (i, case) in CASES.iter().enumerate() {
+        let mut w = open(case, |s| s.options.model = Some("builtin:teapot?triangles=1000".into()));
+        w.key(Modifiers::NONE, egui::Key::F5);
+        check(&mut w, case, "the Check workspace", &mut wrong);
+        // What a run takes is too long for all.
+        if i < 2 {
+            w.button("Run the lab");
+            w.until("a case", |s| !s.checks.cases.is_empty());
+            check(&mut w, case, "the lab runs", &mut wrong);
+            w.button("Cancel");
+            w.button("zero-directions, bvh, fast: pass");
+            w.until("the case", |s| s.model.as_ref().is_some_and(|m| m.scene.name.starts_with("case:")));
+            w.ready();
+            check(&mut w, case, "a cell", &mut wrong);
+        }
+        if w.has(egui::Role::Button, "Check this model") {
+            w.button("Check this model");
+            w.until("the check", |s| s.checks.model.is_some());
+            check(&mut w, case, "a check", &mut wrong);
+        }
+    }
+    // Timings stand in another workspace.
+    wrong.retain(|c| !["\"TIMINGS\"", "\"Measure\""].iter().any(|name| c.ends_with(name)));
+    report(wrong);
+}
+
+#[test]
 fn a_narrow_window_folds_the_statistics() {
     let mut w = open(&CASES[0], |_| {});
     assert!(w.harness.ctx.content_rect().width() < theme::FOLD_BELOW);

@@ -8,6 +8,7 @@ mod files;
 mod window;
 
 mod accessibility;
+mod checking;
 mod errors;
 mod hands;
 mod layout;

@@ -21,7 +21,7 @@ use super::watertight::{AXES, in_order, order_of};
 use super::{Hits, Meets, Own, TestKind, TriHit, TriTest};
 use crate::geometry::eight::{Points, Rays};
 use crate::geometry::expansion::Expansion;
-use crate::geometry::num::narrow;
+use crate::geometry::num::{max, narrow};
 use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::Simd;
 use glam::Vec3;
@@ -54,7 +54,7 @@ impl TriTest for Exact {
 
     #[inline(always)]
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
-        if self.surely_misses(tri) { None } else { meet(self.origin, self.dir, tri) }
+        if self.surely_misses(tri) { None } else { self.meet_for_certain(tri) }
     }
 
     /// The interval of the triangle's box holds every exact t, and what that is rounded to: boxes are wider than any
@@ -66,7 +66,7 @@ impl TriTest for Exact {
 
     #[inline(always)]
     fn hit_in_doubt(&self, tri: &[Vec3; 3], tmin: f32, tmax: f32) -> Option<TriHit> {
-        meet(self.origin, self.dir, tri).filter(|hit| tmin <= hit.t && hit.t <= tmax)
+        self.meet_for_certain(tri).filter(|hit| tmin <= hit.t && hit.t <= tmax)
     }
 
     #[inline(always)]
@@ -74,10 +74,11 @@ impl TriTest for Exact {
         AXES[self.axes as usize % 8]
     }
 
-    /// None is met for certain; those that are not missed for certain are in doubt.
+    /// Those that are not missed for certain are in doubt; if there are several, they go through the second step side by side.
     #[inline(always)]
-    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, slabs: &EightSlabs<S::F>, [a, b, c]: &[Points<S::F>; 3]) -> Meets<S> {
-        let (a, b, c) = (seen(s, own, *a), seen(s, own, *b), seen(s, own, *c));
+    fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, slabs: &EightSlabs<S::F>, corners: &[Points<S::F>; 3]) -> Meets<S> {
+        let [a, b, c] = *corners;
+        let (a, b, c) = (seen(s, own, a), seen(s, own, b), seen(s, own, c));
         let u = s.sub(s.mul(c[0], b[1]), s.mul(c[1], b[0]));
         let v = s.sub(s.mul(a[0], c[1]), s.mul(a[1], c[0]));
         let w = s.sub(s.mul(b[0], a[1]), s.mul(b[1], a[0]));
@@ -88,13 +89,18 @@ impl TriTest for Exact {
         let bound = s.mul(displaced, s.add(s.max(x, y), displaced));
         let zero = s.splat(0.0);
         let doubt = s.or(s.le(s.sub(zero, bound), least), s.le(greatest, bound));
+        if S::DOUBLES && s.bits(doubt).count_ones() >= SIDE_BY_SIDE {
+            return in_64_bits(s, own, corners, doubt);
+        }
         Meets { met: s.lt(zero, zero), doubt: Some(doubt), t: zero, u: zero, v: zero }
     }
 
-    /// As none is met for certain, nothing has to be asked about boxes yet.
+    /// Nothing has to be asked about boxes.
     #[inline(always)]
-    fn inside<S: Simd>(s: S, meets: &Meets<S>, _: &EightSlabs<S::F>, _: [S::F; 2], _: &[Points<S::F>; 3]) -> Hits<S> {
-        Hits { hit: meets.met, doubt: meets.doubt(s), t: meets.t, u: meets.u, v: meets.v }
+    fn inside<S: Simd>(s: S, meets: &Meets<S>, _: &EightSlabs<S::F>, [tmin, tmax]: [S::F; 2], _: &[Points<S::F>; 3]) -> Hits<S> {
+        let t = meets.t;
+        let inside = s.and(s.and(s.le(tmin, t), s.le(t, tmax)), s.le(s.abs(t), s.splat(f32::MAX)));
+        Hits { hit: s.and(meets.met, inside), doubt: meets.doubt(s), t, u: meets.u, v: meets.v }
     }
 
     #[inline(always)]
@@ -120,6 +126,105 @@ impl TriTest for Exact {
     }
 }
 
+/// From so many on it pays to take the second step with all eight.
+const SIDE_BY_SIDE: u32 = 3;
+
+/// Three coordinates in 64 bits.
+type Doubles<S> = [<S as Simd>::D; 3];
+
+/// The second step for those of eight that are in doubt, by the operations of [`meet`]: which are met for certain and where,
+/// and which are still in doubt.
+#[inline(always)]
+fn in_64_bits<S: Simd>(s: S, own: &Own<S::F>, corners: &[Points<S::F>; 3], doubt: S::M) -> Meets<S> {
+    let &[ox, oy, oz, dx, dy, dz, _] = own;
+    let (o, d) = (wide(s, Points { x: ox, y: oy, z: oz }), wide(s, Points { x: dx, y: dy, z: dz }));
+    let [a, b, c] = *corners;
+    let (a, b, c) = (less(s, wide(s, a), o), less(s, wide(s, b), o), less(s, wide(s, c), o));
+    let of_bc = cross(s, b, c);
+    let (u, v, w) = (dot(s, d, of_bc), dot(s, d, cross(s, c, a)), dot(s, d, cross(s, a, b)));
+    let (of_a, of_b, of_c) = (greatest(s, a), greatest(s, b), greatest(s, c));
+    let bound = s.mul_double(s.splat_double(BOUND), greatest(s, d));
+    let bounds = [
+        s.mul_double(s.mul_double(bound, of_b), of_c),
+        s.mul_double(s.mul_double(bound, of_c), of_a),
+        s.mul_double(s.mul_double(bound, of_a), of_b),
+    ];
+    let (size_u, size_v, size_w) = (s.abs_double(u), s.abs_double(v), s.abs_double(w));
+    let certain = s.and(s.lt_double(bounds[0], size_u), s.and(s.lt_double(bounds[1], size_v), s.lt_double(bounds[2], size_w)));
+    let zero = s.splat_double(0.0);
+    let least = s.min_double(s.min_double(u, v), w);
+    let most = s.max_double(s.max_double(u, v), w);
+    let one_sign = s.or(s.lt_double(zero, least), s.lt_double(most, zero));
+    let (above, below) = (dot(s, a, of_bc), s.add_double(s.add_double(u, v), w));
+    let sizes = s.add_double(s.add_double(size_u, size_v), size_w);
+    let sum = s.add_double(s.add_double(bounds[0], bounds[1]), bounds[2]);
+    let of_below = s.add_double(sum, s.mul_double(s.splat_double(2.0 * f64::EPSILON), sizes));
+    let inverse = s.div_double(s.splat_double(1.0), below);
+    let t = s.mul_double(above, inverse);
+    let of_above = s.mul_double(s.mul_double(s.mul_double(s.splat_double(BOUND), of_a), of_b), of_c);
+    let size_t = s.abs_double(t);
+    let of_both = s.add_double(of_above, s.mul_double(size_t, of_below));
+    let relative = s.mul_double(s.splat_double(2.0 * f64::EPSILON), size_t);
+    let error = s.add_double(s.mul_double(s.mul_double(s.splat_double(2.0), of_both), s.abs_double(inverse)), relative);
+    let (low, high) = (s.narrow(s.sub_double(t, error)), s.narrow(s.add_double(t, error)));
+    let known = s.lt_double(s.mul_double(s.splat_double(2.0), of_below), s.abs_double(below));
+    let sure = s.and(s.and(certain, known), s.eq(low, high));
+    // Where signs are certain and differ, it is missed.
+    let missed = s.and(certain, unlike(s, one_sign));
+    let settled = s.or(sure, missed);
+    Meets {
+        met: s.and(doubt, s.and(sure, one_sign)),
+        doubt: Some(s.and(doubt, unlike(s, settled))),
+        t: low,
+        u: weight(s, v, inverse),
+        v: weight(s, w, inverse),
+    }
+}
+
+/// The weight of a corner, from 0 to 1.
+#[inline(always)]
+fn weight<S: Simd>(s: S, x: S::D, inverse: S::D) -> S::F {
+    let share = s.max_double(s.mul_double(x, inverse), s.splat_double(0.0));
+    s.narrow(s.min_double(share, s.splat_double(1.0)))
+}
+
+/// Where a mask does not hold.
+#[inline(always)]
+fn unlike<S: Simd>(s: S, m: S::M) -> S::M {
+    let (zero, one) = (s.splat(0.0), s.splat(1.0));
+    s.eq(s.select(m, one, zero), zero)
+}
+
+#[inline(always)]
+fn wide<S: Simd>(s: S, p: Points<S::F>) -> Doubles<S> {
+    [s.widen(p.x), s.widen(p.y), s.widen(p.z)]
+}
+
+#[inline(always)]
+fn less<S: Simd>(s: S, a: Doubles<S>, b: Doubles<S>) -> Doubles<S> {
+    [s.sub_double(a[0], b[0]), s.sub_double(a[1], b[1]), s.sub_double(a[2], b[2])]
+}
+
+#[inline(always)]
+fn cross<S: Simd>(s: S, a: Doubles<S>, b: Doubles<S>) -> Doubles<S> {
+    [
+        s.sub_double(s.mul_double(a[1], b[2]), s.mul_double(b[1], a[2])),
+        s.sub_double(s.mul_double(a[2], b[0]), s.mul_double(b[2], a[0])),
+        s.sub_double(s.mul_double(a[0], b[1]), s.mul_double(b[0], a[1])),
+    ]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(s: S, a: Doubles<S>, b: Doubles<S>) -> S::D {
+    s.add_double(s.add_double(s.mul_double(a[0], b[0]), s.mul_double(a[1], b[1])), s.mul_double(a[2], b[2]))
+}
+
+/// The greatest coordinate without its sign.
+#[inline(always)]
+fn greatest<S: Simd>(s: S, p: Doubles<S>) -> S::D {
+    s.max_double(s.max_double(s.abs_double(p[0]), s.abs_double(p[1])), s.abs_double(p[2]))
+}
+
 /// Where eight corners are beside the ray, as [`Exact::surely_misses`] has it.
 #[inline(always)]
 fn seen<S: Simd>(s: S, own: &Own<S::F>, p: Points<S::F>) -> [S::F; 2] {
@@ -129,6 +234,15 @@ fn seen<S: Simd>(s: S, own: &Own<S::F>, p: Points<S::F>) -> [S::F; 2] {
 }
 
 impl Exact {
+    /// The second and the third step, with the axes in the order of the first: so their operations are the same for one
+    /// triangle and for eight.
+    #[inline(always)]
+    fn meet_for_certain(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
+        let [x, y, z] = self.axes();
+        let in_order = |p: Vec3| Vec3::new(p[x], p[y], p[z]);
+        meet(in_order(self.origin), in_order(self.dir), &tri.map(in_order))
+    }
+
     /// The first step.
     #[inline(always)]
     fn surely_misses(&self, tri: &[Vec3; 3]) -> bool {
@@ -146,11 +260,6 @@ impl Exact {
         let bound = displaced * (m + displaced);
         -greatest([-u, -v, -w]) < -bound && bound < greatest([u, v, w])
     }
-}
-
-#[inline(always)]
-fn max(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// The bound of the second step, of the product of the three greatest components.
@@ -181,22 +290,23 @@ fn meet(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> Option<TriHit> {
     let (above, below) = (a.dot(of_bc), u + v + w);
     // The sum of the three, whose signs do not differ by more than their bounds, is rounded twice.
     let of_below = bounds[0] + bounds[1] + bounds[2] + 2.0 * f64::EPSILON * (u.abs() + v.abs() + w.abs());
-    let t = of_quotient([above, BOUND * of_a * of_b * of_c], [below, of_below]).unwrap_or_else(|| exact_t(origin, dir, tri));
+    let inverse = 1.0 / below;
+    let t = above * inverse;
+    let t = rounded([t, BOUND * of_a * of_b * of_c], [below, of_below]).unwrap_or_else(|| exact_t(origin, dir, tri));
     // Of a sliver seen edge on 64 bits may not even know the sign.
-    let weight = |x: f64| narrow((x / below).clamp(0.0, 1.0));
+    let weight = |x: f64| narrow((x * inverse).clamp(0.0, 1.0));
     let (u, v) = if below.abs() > of_below { (weight(v), weight(w)) } else { (1.0 / 3.0, 1.0 / 3.0) };
     t.is_finite().then_some(TriHit { t, u, v })
 }
 
-/// The quotient of two numbers with an error each, correctly rounded, if that is certain.
+/// A quotient, rounded twice, of a number with an error and a divisor with an error: correctly rounded, if that is certain.
 #[inline(always)]
-fn of_quotient([above, of_above]: [f64; 2], [below, of_below]: [f64; 2]) -> Option<f32> {
+fn rounded([t, of_above]: [f64; 2], [below, of_below]: [f64; 2]) -> Option<f32> {
     if below.abs() <= 2.0 * of_below {
         return None;
     }
-    let t = above / below;
     // Twice the first order covers the higher ones, as the divisor is at least half of what it seems.
-    let error = 2.0 * (of_above + t.abs() * of_below) / below.abs() + f64::EPSILON * t.abs();
+    let error = 2.0 * (of_above + t.abs() * of_below) * (1.0 / below).abs() + 2.0 * f64::EPSILON * t.abs();
     let (low, high) = (narrow(t - error), narrow(t + error));
     (low == high).then_some(low)
 }

@@ -2,7 +2,7 @@
 
 use super::{Meets, Own, TestKind, TriHit, TriTest};
 use crate::geometry::eight::{Points, Rays};
-use crate::geometry::num::narrow;
+use crate::geometry::num::{max, min, narrow};
 use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::Simd;
 use glam::Vec3;
@@ -49,11 +49,13 @@ impl TriTest for Watertight {
         let u = c.x * b.y - c.y * b.x;
         let v = a.x * c.y - a.y * c.x;
         let w = b.x * a.y - b.y * a.x;
-        if u == 0.0 || v == 0.0 || w == 0.0 {
-            return self.meet_on_edge(&[a, b, c]);
-        }
-        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+        // Two branches, of which the first goes one way nearly always: each sign by itself would be a guess.
+        let (least, greatest) = (min(min(u, v), w), max(max(u, v), w));
+        if least < 0.0 && greatest > 0.0 {
             return None;
+        }
+        if least == 0.0 || greatest == 0.0 {
+            return self.meet_on_edge(&[a, b, c]);
         }
         let inv = 1.0 / (u + v + w);
         let t = (u * a.z + v * b.z + w * c.z) * (self.shear.z * inv);
