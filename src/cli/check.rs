@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::args::{LookArgs, ModelArgs, Size};
+use super::args::{LookArgs, ModelArgs, Size, seconds};
 use super::context::Context;
 use super::failure::Failure;
 use super::output::{print, print_json};
@@ -27,6 +27,9 @@ pub struct Args {
     /// The picture whose rays are traced: those of the view, and as many diffuse ones from what it sees.
     #[arg(long, value_name = "WxH", default_value = "320x200")]
     size: Size,
+    /// The most seconds for the rays of a structure; a slower one traces an evenly spread part of them.
+    #[arg(long, default_value = "10", value_parser = seconds)]
+    secs: f64,
     #[command(flatten)]
     look: LookArgs,
     #[command(flatten)]
@@ -60,7 +63,8 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let job = Job { scene: Arc::clone(&model.scene), accel: rays::finder(&model, &cx)?, camera, mode: Mode::Shaded };
     let size = [args.size.width, args.size.height];
     let build_cx = cx.build_cx();
-    let check = bar::watch("check", &build_cx.progress, || check_model(&model.geometry, &structures, &job, size, &build_cx));
+    let check =
+        bar::watch("check", &build_cx.progress, || check_model(&model.geometry, &structures, &job, size, args.secs, &build_cx));
     let check = check.map_err(|error| match error {
         CheckError::Cancelled(_) => Failure::Cancelled,
         error => Failure::Other(error.into()),

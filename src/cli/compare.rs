@@ -13,6 +13,7 @@ use super::structures::{BuildArgs, Racers};
 use super::table::facts;
 use super::{bar, outcome, quality, rays, stats};
 use crate::accel::Accel;
+use crate::geometry::tri::TestKind;
 use crate::lab::format::count;
 use crate::lab::{
     Contestant, Fairness, MeasureOptions, PixelOrder, Quality, RasterRow, RayKind, RaySet, Report, StructureRow, Timing, measure,
@@ -55,6 +56,9 @@ pub struct Args {
     /// Compare each structure in its fastest form.
     #[arg(long)]
     best: bool,
+    /// Triangle tests that race each other, between commas: each structure is built with each [default: that of --test].
+    #[arg(long, value_name = "TESTS", value_delimiter = ',')]
+    tests: Vec<TestKind>,
     #[command(flatten)]
     look: LookArgs,
     #[command(flatten)]
@@ -93,10 +97,12 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let model = cx.load(&args.model.model)?;
 
     let (mut structures, mut contestants) = (Vec::new(), Vec::new());
-    for (entry, params) in entries.iter().zip(&params) {
-        let options = args.how.options(args.quality);
-        let (row, built) = stats::row(entry, &args.build, (params, &options), &model, &cx)?;
-        contestants.extend(built.map(|built| Contestant { id: row.id.clone(), accel: built.accel }));
+    let (tests, options) = (args.tests(), args.how.options(args.quality));
+    let choices = entries.iter().zip(&params).flat_map(|choice| tests.iter().map(move |test| (choice, *test)));
+    for ((entry, params), test) in choices {
+        let (row, built) = stats::row(entry, test, (params, &options), &model, &cx)?;
+        let id = if tests.len() == 1 { row.id.clone() } else { format!("{} {}", row.id, test.id()) };
+        contestants.extend(built.map(|built| Contestant { id, accel: built.accel }));
         structures.push(row);
     }
     let mut report = Report { scene: model.facts(), machine: cx.machine(), structures };
@@ -114,6 +120,19 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 }
 
 impl Args {
+    /// The triangle tests asked for, each once.
+    fn tests(&self) -> Vec<TestKind> {
+        let mut tests = if self.tests.is_empty() { vec![self.build.test] } else { self.tests.clone() };
+        let mut seen = Vec::new();
+        tests.retain(|test| {
+            !seen.contains(test) && {
+                seen.push(*test);
+                true
+            }
+        });
+        tests
+    }
+
     /// The kinds of rays asked for, each once.
     fn kinds(&self) -> BTreeSet<RayKind> {
         self.rays.iter().copied().collect()
@@ -153,10 +172,8 @@ impl Race<'_> {
                     measure(self.contestants, &set, options, &self.cx.pool, &self.cx.cancel, progress)
                 })?
             };
-            for timing in timings {
-                if let Some(row) = report.structures.iter_mut().find(|row| row.id == timing.id) {
-                    row.rays.insert(*kind, timing);
-                }
+            for (row, timing) in quality::built(&mut report.structures).zip(timings) {
+                row.rays.insert(*kind, timing);
             }
             if self.args.how.fit_costs {
                 sets.push((set, memory));
@@ -200,7 +217,8 @@ impl Race<'_> {
 }
 
 fn text(args: &Args, report: &Report, raster: Option<&RasterRow>) -> String {
-    let terms = format!("{}; {} test", args.options().fairness.label(), args.build.test.id());
+    let tests = args.tests().iter().map(|test| test.id()).collect::<Vec<_>>().join(", ");
+    let terms = format!("{}; {tests} test", args.options().fairness.label());
     let mut out = facts(&[stats::head(report), vec![("terms", terms)]].concat());
     if !report.structures.is_empty() {
         out += &format!("\n{}\n{}", stats::structures(report), quality::text(report));

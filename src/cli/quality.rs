@@ -46,12 +46,15 @@ pub fn fit(
     let progress = Progress::new();
     let fit = || fit_costs(contestants, &sets, &FitOptions::default(), &cx.pool, &cx.cancel, &progress);
     let fitted = bar::watch("fit costs", &progress, fit)?;
-    for (contestant, costs) in contestants.iter().zip(fitted) {
-        if let Some(row) = rows.iter_mut().find(|row| row.id == contestant.id) {
-            row.costs = costs.zip(row.quality.as_ref()).map(|(costs, quality)| CostRow::of(costs, quality));
-        }
+    for (row, costs) in built(rows).zip(fitted) {
+        row.costs = costs.zip(row.quality.as_ref()).map(|(costs, quality)| CostRow::of(costs, quality));
     }
     Ok(())
+}
+
+/// The rows of what could be built, which are the contestants, in their order.
+pub fn built(rows: &mut [StructureRow]) -> impl Iterator<Item = &mut StructureRow> {
+    rows.iter_mut().filter(|row| row.built.is_some())
 }
 
 /// A table of quality, and one of costs if they were fitted.

@@ -15,6 +15,7 @@ use crate::accel::params::ParamValues;
 use crate::accel::registry::Entry;
 use crate::accel::stats::{SahWeights, Stats};
 use crate::geometry::num::floor_index;
+use crate::geometry::tri::TestKind;
 use crate::lab::format::{MISSING, bytes, count, duration, number};
 use crate::lab::{BuiltFacts, BuiltRow, Contestant, Quality, QualityOptions, RayKind, Report, StructureRow};
 use crate::scene::CameraSpec;
@@ -44,7 +45,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let options = args.quality.options(true);
     let (mut structures, mut contestants) = (Vec::new(), Vec::new());
     for (entry, params) in entries.iter().zip(&params) {
-        let (row, built) = row(entry, &args.build, (params, &options), &model, &cx)?;
+        let (row, built) = row(entry, args.build.test, (params, &options), &model, &cx)?;
         if args.quality.fit_costs {
             contestants.extend(built.map(|built| Contestant { id: row.id.clone(), accel: built.accel }));
         }
@@ -77,13 +78,13 @@ pub fn print_report(report: &Report, print: impl FnOnce() -> Result<(), Failure>
 /// Builds a structure and looks at it. One that cannot be built is a row with the reason.
 pub fn row(
     entry: &Entry,
-    build: &BuildArgs,
+    test: TestKind,
     (params, options): (&ParamValues, &QualityOptions),
     model: &Model,
     cx: &Context,
 ) -> Result<(StructureRow, Option<BuiltRow>), Failure> {
-    let mut row = StructureRow::new(entry.id, params, build.test);
-    match cx.build(entry, model, build.test, params) {
+    let mut row = StructureRow::new(entry.id, params, test);
+    match cx.build(entry, model, test, params) {
         Ok(built) => {
             let (accel, weights) = (built.accel.as_ref(), SahWeights::of(params));
             let stats = Stats::of(accel, weights, &cx.cancel)?;

@@ -70,7 +70,8 @@ impl From<BuildError> for CheckError {
     }
 }
 
-/// Checks the triangles and all structures, which were built over them, on the rays of a picture from the job's camera.
+/// Checks the triangles and all structures, which were built over them, on the rays of a picture from the job's camera, as
+/// many as each structure takes in about `secs` seconds.
 ///
 /// # Errors
 /// Cancelled, or over the memory budget.
@@ -79,6 +80,7 @@ pub fn check_model(
     structures: &[Checked],
     job: &Job,
     [width, height]: [u32; 2],
+    secs: f64,
     cx: &BuildCx,
 ) -> Result<ModelCheck, CheckError> {
     let mesh = check(geometry, cx)?;
@@ -90,7 +92,7 @@ pub fn check_model(
     cx.progress.start("compare", structures.len() as u64);
     let mut rows = Vec::with_capacity(structures.len());
     for Checked { id, test, accel } in structures {
-        rows.push(reference.compare((id, *test), accel.as_ref(), &rays, &cx.pool, &cx.cancel)?);
+        rows.push(reference.compare((id, *test), accel.as_ref(), &rays, secs, &cx.pool, &cx.cancel)?);
         cx.progress.advance(1);
     }
     Ok(ModelCheck { mesh, structures: rows, rays })

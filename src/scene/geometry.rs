@@ -154,7 +154,8 @@ impl Geometry {
     /// The corners of a triangle in the scaled space.
     #[inline(always)]
     pub fn corners(&self, prim: PrimRef) -> [Vec3; 3] {
-        self.triangles[prim as usize].map(|i| self.positions[i as usize])
+        let [a, b, c] = self.triangles[prim as usize];
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
     /// The vertex positions in the scaled space and the three indices of each triangle.

@@ -223,6 +223,9 @@ pub fn stability(shared: &Shared, through: Sender<CaseRow>) -> std::io::Result<S
     })
 }
 
+/// The most seconds for the rays of a structure that is checked: its user waits.
+const CHECK_SECS: f64 = 1.0;
+
 /// The check of a model on its way, and the structures that were built for it.
 pub type Checking = Job<Result<(ModelCheck, Vec<Built>), CheckError>>;
 
@@ -236,9 +239,9 @@ pub fn check_model(shared: &Shared, plan: Plan) -> std::io::Result<Checking> {
         let (built, _) = plan.build(&cx)?;
         let checked = |b: &Built| Checked { id: b.key.entry.id.to_owned(), test: b.key.test, accel: Arc::clone(&b.accel) };
         let structures: Vec<Checked> = built.iter().map(checked).collect();
-        // Half of the pixels on either axis: brute force is among the structures.
+        // Half of the pixels on either axis.
         let size = [width.div_ceil(2), height.div_ceil(2)];
-        let check = lab::check_model(view.accel.geometry(), &structures, &view, size, &cx)?;
+        let check = lab::check_model(view.accel.geometry(), &structures, &view, size, CHECK_SECS, &cx)?;
         Ok((check, built))
     })
 }

@@ -74,7 +74,7 @@ fn the_open_model_is_checked_and_what_differs_is_marked() {
     let check = w.state().checks.model.as_ref().expect("checked");
     assert_eq!(check.structures.len(), registry::ALL.len());
     assert!(check.mesh.boundary_edges > 0 && !check.mesh.is_closed(), "the teapot is open: {:?}", check.mesh);
-    assert!(check.structures.iter().all(|row| row.wrong == 0 && row.rays > 10_000));
+    assert!(check.structures.iter().all(|row| row.wrong == 0 && row.rays > 0));
     assert!(w.says("Open edges") && w.says("0 wrong"));
     // The matrix is not run for that.
     assert!(w.state().checks.cases.is_empty());

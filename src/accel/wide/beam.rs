@@ -339,9 +339,16 @@ impl Beam {
 
     /// One of the rays.
     fn ray<T: TriTest>(&self, lane: usize) -> T {
-        let [lo, hi, inv] = self.slabs.map(|part| part.map(|axis| axis[lane]));
-        T::from_own(&self.own.map(|number| number[lane]), Slabs::from_parts(lo, hi, inv))
+        let ([a, b, c, d, e, f, g], [lo, hi, inv]) = (&self.own, &self.slabs);
+        let own = [a[lane], b[lane], c[lane], d[lane], e[lane], f[lane], g[lane]];
+        T::from_own(&own, Slabs::from_parts(of_lane(lo, lane), of_lane(hi, lane), of_lane(inv, lane)))
     }
+}
+
+/// One of eight, of each axis.
+#[inline(always)]
+fn of_lane([x, y, z]: &[Lanes; 3], lane: usize) -> [f32; 3] {
+    [x[lane], y[lane], z[lane]]
 }
 
 /// The corner of one triangle of eight in all lanes, the axes in some order.

@@ -167,7 +167,8 @@ impl Corners {
     /// The points that are the corners of one.
     #[inline(always)]
     fn of_lane(&self, lane: usize) -> [usize; 3] {
-        self.of.each_ref().map(|corner| usize::from(corner[lane]) % LANES)
+        let [a, b, c] = &self.of;
+        [usize::from(a[lane]) % LANES, usize::from(b[lane]) % LANES, usize::from(c[lane]) % LANES]
     }
 }
 
@@ -206,8 +207,8 @@ impl Pack for Patch {
 
     #[inline(always)]
     fn triangle(&self, _: &[Vec3], lane: usize) -> [Vec3; 3] {
-        let [x, y, z] = &self.points;
-        self.corners.of_lane(lane).map(|i| Vec3::new(x[i], y[i], z[i]))
+        let ([x, y, z], [a, b, c]) = (&self.points, self.corners.of_lane(lane));
+        [Vec3::new(x[a], y[a], z[a]), Vec3::new(x[b], y[b], z[b]), Vec3::new(x[c], y[c], z[c])]
     }
 
     #[inline(always)]
@@ -266,7 +267,8 @@ impl Pack for Indexed {
 
     #[inline(always)]
     fn triangle(&self, points: &[Vec3], lane: usize) -> [Vec3; 3] {
-        self.corners.of_lane(lane).map(|i| points[self.points[i] as usize])
+        let [a, b, c] = self.corners.of_lane(lane);
+        [points[self.points[a] as usize], points[self.points[b] as usize], points[self.points[c] as usize]]
     }
 
     #[inline(always)]

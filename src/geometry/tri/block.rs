@@ -57,8 +57,15 @@ impl Eight for Block {
 
     #[inline(always)]
     fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.corners.each_ref().map(|c| Vec3::new(c[0][lane], c[1][lane], c[2][lane]))
+        let [a, b, c] = &self.corners;
+        [of_lane(a, lane), of_lane(b, lane), of_lane(c, lane)]
     }
+}
+
+/// One point of eight.
+#[inline(always)]
+fn of_lane([x, y, z]: &[Lanes; 3], lane: usize) -> Vec3 {
+    Vec3::new(x[lane], y[lane], z[lane])
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ impl TriTest for Double {
     #[inline(always)]
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
         let (o, d) = (self.0.origin.as_dvec3(), self.0.dir.as_dvec3());
-        let [a, b, c] = tri.map(|p| p.as_dvec3() - o);
+        let (a, b, c) = (tri[0].as_dvec3() - o, tri[1].as_dvec3() - o, tri[2].as_dvec3() - o);
         let of_bc = b.cross(c);
         let (u, v, w) = (d.dot(of_bc), d.dot(c.cross(a)), d.dot(a.cross(b)));
         if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {

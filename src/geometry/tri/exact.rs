@@ -17,14 +17,14 @@
 //! A ray through an edge or a corner, to the bit, hits all triangles that share it, at the same t. A ray in a
 //! triangle's plane misses it.
 
-use super::watertight::{AXES, in_order, order_of};
+use super::watertight::{AXES, in_order, order_of, with_axes};
 use super::{Hits, Meets, Own, TestKind, TriHit, TriTest};
 use crate::geometry::eight::{Points, Rays};
 use crate::geometry::expansion::Expansion;
-use crate::geometry::num::{max, narrow};
+use crate::geometry::num::{max, min, narrow};
 use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::Simd;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// See above.
 #[derive(Clone, Copy, Debug)]
@@ -238,28 +238,31 @@ impl Exact {
     /// triangle and for eight.
     #[inline(always)]
     fn meet_for_certain(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
-        let [x, y, z] = self.axes();
-        let in_order = |p: Vec3| Vec3::new(p[x], p[y], p[z]);
-        meet(in_order(self.origin), in_order(self.dir), &tri.map(in_order))
+        let (axes, [a, b, c]) = (self.axes(), *tri);
+        let tri = [with_axes(a, axes), with_axes(b, axes), with_axes(c, axes)];
+        meet(with_axes(self.origin, axes), with_axes(self.dir, axes), &tri)
     }
 
     /// The first step.
     #[inline(always)]
     fn surely_misses(&self, tri: &[Vec3; 3]) -> bool {
-        let ([x, y, z], d) = (self.axes(), self.dir);
-        let [a, b, c] = tri.map(|p| {
-            let p = p - self.origin;
-            [p[x] * d[z] - d[x] * p[z], p[y] * d[z] - d[y] * p[z]]
-        });
-        let u = c[0] * b[1] - c[1] * b[0];
-        let v = a[0] * c[1] - a[1] * c[0];
-        let w = b[0] * a[1] - b[1] * a[0];
-        let greatest = |of: [f32; 3]| max(max(of[0], of[1]), of[2]);
-        let m = max(greatest([a[0], b[0], c[0]].map(f32::abs)), greatest([a[1], b[1], c[1]].map(f32::abs)));
+        let (axes, o, [a, b, c]) = (self.axes(), self.origin, *tri);
+        let d = with_axes(self.dir, axes);
+        let (a, b, c) = (beside(with_axes(a - o, axes), d), beside(with_axes(b - o, axes), d), beside(with_axes(c - o, axes), d));
+        let u = c.x * b.y - c.y * b.x;
+        let v = a.x * c.y - a.y * c.x;
+        let w = b.x * a.y - b.y * a.x;
+        let (x, y) = (max(max(a.x.abs(), b.x.abs()), c.x.abs()), max(max(a.y.abs(), b.y.abs()), c.y.abs()));
         let displaced = DISPLACED * self.slabs.width_of_x();
-        let bound = displaced * (m + displaced);
-        -greatest([-u, -v, -w]) < -bound && bound < greatest([u, v, w])
+        let bound = displaced * (max(x, y) + displaced);
+        min(min(u, v), w) < -bound && bound < max(max(u, v), w)
     }
+}
+
+/// Where a corner is beside the ray, which both are seen from the ray's origin.
+#[inline(always)]
+fn beside(p: Vec3, d: Vec3) -> Vec2 {
+    Vec2::new(p.x * d.z - d.x * p.z, p.y * d.z - d.y * p.z)
 }
 
 /// The bound of the second step, of the product of the three greatest components.
@@ -269,10 +272,10 @@ const BOUND: f64 = 64.0 * (f64::EPSILON / 2.0);
 #[inline(never)]
 fn meet(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> Option<TriHit> {
     let (o, d) = (origin.as_dvec3(), dir.as_dvec3());
-    let [a, b, c] = tri.map(|p| p.as_dvec3() - o);
+    let (a, b, c) = (tri[0].as_dvec3() - o, tri[1].as_dvec3() - o, tri[2].as_dvec3() - o);
     let of_bc = b.cross(c);
     let (u, v, w) = (d.dot(of_bc), d.dot(c.cross(a)), d.dot(a.cross(b)));
-    let [of_a, of_b, of_c] = [a, b, c].map(|p| p.abs().max_element());
+    let (of_a, of_b, of_c) = (a.abs().max_element(), b.abs().max_element(), c.abs().max_element());
     let bound = BOUND * d.abs().max_element();
     let bounds = [bound * of_b * of_c, bound * of_c * of_a, bound * of_a * of_b];
     let certain = |value: f64, bound: f64| value.abs() > bound;

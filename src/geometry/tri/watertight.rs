@@ -32,9 +32,9 @@ impl TriTest for Watertight {
     #[inline(always)]
     fn prepare(ray: &Ray, bounds: &Aabb) -> Self {
         let (d, axes) = (ray.dir, order_of(ray.dir));
-        let [kx, ky, kz] = AXES[axes as usize % 8];
-        let shear = Vec3::new(d[kx] / d[kz], d[ky] / d[kz], 1.0 / d[kz]);
-        let origin = Vec3::new(ray.origin[kx], ray.origin[ky], ray.origin[kz]);
+        let d = with_axes(d, AXES[axes as usize % 8]);
+        let shear = Vec3::new(d.x / d.z, d.y / d.z, 1.0 / d.z);
+        let origin = with_axes(ray.origin, AXES[axes as usize % 8]);
         Self { origin, axes, shear, slabs: Slabs::new(ray, bounds) }
     }
 
@@ -45,7 +45,7 @@ impl TriTest for Watertight {
 
     #[inline(always)]
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
-        let [a, b, c] = tri.map(|p| self.sheared(p));
+        let (a, b, c) = (self.sheared(tri[0]), self.sheared(tri[1]), self.sheared(tri[2]));
         let u = c.x * b.y - c.y * b.x;
         let v = a.x * c.y - a.y * c.x;
         let w = b.x * a.y - b.y * a.x;
@@ -107,6 +107,13 @@ impl TriTest for Watertight {
 /// number `2 * z + swap`.
 pub const AXES: [[usize; 3]; 8] = [[1, 2, 0], [2, 1, 0], [2, 0, 1], [0, 2, 1], [0, 1, 2], [1, 0, 2], [0, 1, 2], [1, 0, 2]];
 
+/// A point with the axes in an order; masks in place of checks, as these are known to be 0, 1 and 2.
+#[inline(always)]
+pub fn with_axes(p: Vec3, [x, y, z]: [usize; 3]) -> Vec3 {
+    let p = [p.x, p.y, p.z, 0.0];
+    Vec3::new(p[x & 3], p[y & 3], p[z & 3])
+}
+
 /// The number of the order of axes for a direction.
 #[inline(always)]
 pub fn order_of(dir: Vec3) -> u32 {
@@ -163,8 +170,7 @@ impl Watertight {
     /// A corner as the ray sees it.
     #[inline(always)]
     fn sheared(&self, p: Vec3) -> Vec3 {
-        let [kx, ky, kz] = self.axes();
-        let p = Vec3::new(p[kx], p[ky], p[kz]) - self.origin;
+        let p = with_axes(p, self.axes()) - self.origin;
         Vec3::new(p.x - self.shear.x * p.z, p.y - self.shear.y * p.z, p.z)
     }
 

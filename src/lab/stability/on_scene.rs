@@ -3,6 +3,8 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -25,7 +27,7 @@ pub struct SceneRow {
     pub id: String,
     /// The triangle test.
     pub test: TestKind,
-    /// Rays traced.
+    /// Rays traced: all, or an evenly spread part where a structure is too slow for that.
     pub rays: usize,
     /// Rays that are answered otherwise than exactly, as rounding may have it.
     pub rounded: usize,
@@ -46,8 +48,8 @@ pub struct DifferingRay {
     pub t: f32,
 }
 
-/// Rays compared at a time.
-const CHUNK: usize = 1024;
+/// Rays compared at a time; a structure that is none takes a tenth of a second for them on a million triangles.
+const CHUNK: usize = 64;
 /// Differing rays kept of a row.
 const KEPT: usize = 512;
 
@@ -70,7 +72,8 @@ impl Reference {
         Ok(Self { accel: entry.build(geometry, TestKind::Exact, &params, cx)?, closed })
     }
 
-    /// Traces the rays through a structure that was built over the same geometry, and judges it.
+    /// Traces the rays through a structure that was built over the same geometry, as many as it takes in about `secs`
+    /// seconds, and judges it.
     ///
     /// # Errors
     /// [`Cancelled`] within 100 ms of the request.
@@ -79,30 +82,47 @@ impl Reference {
         (id, test): (&str, TestKind),
         accel: &dyn Accel,
         rays: &[Ray],
+        secs: f64,
         pool: &Pool,
         cancel: &Cancel,
     ) -> Result<SceneRow, Cancelled> {
-        let compare = |(chunk, rays): (usize, &[Ray])| self.chunk(test, accel, chunk * CHUNK, rays, cancel);
-        let parts: Result<Vec<Vec<DifferingRay>>, _> = pool.run(|| rays.par_chunks(CHUNK).enumerate().map(compare).collect());
-        let mut differing = parts?.concat();
-        differing.sort_by_key(|ray| ray.why.is_none());
+        let (begin, next, traced) = (Instant::now(), AtomicUsize::new(0), AtomicUsize::new(0));
+        // Every so many-th ray is a part, so that whatever parts there is time for are spread over the picture. They are
+        // taken one by one, since those of a list that is dealt out beforehand would not be the first ones.
+        let parts = rays.len().div_ceil(CHUNK);
+        let work = |_| {
+            let mut differing = Vec::new();
+            loop {
+                let part = next.fetch_add(1, Ordering::Relaxed);
+                if part >= parts || (part > 0 && begin.elapsed().as_secs_f64() > secs) {
+                    return Ok(differing);
+                }
+                let which: Vec<usize> = (part..rays.len()).step_by(parts).collect();
+                differing.extend(self.part(test, accel, rays, &which, cancel)?);
+                traced.fetch_add(which.len(), Ordering::Relaxed);
+            }
+        };
+        let found: Result<Vec<Vec<DifferingRay>>, _> = pool.run(|| (0..pool.threads()).into_par_iter().map(work).collect());
+        let mut differing = found?.concat();
+        differing.sort_by_key(|ray| (ray.why.is_none(), ray.ray));
         let wrong = differing.iter().filter(|ray| ray.why.is_some()).count();
         let rounded = differing.len() - wrong;
         differing.truncate(KEPT);
-        Ok(SceneRow { id: id.to_owned(), test, rays: rays.len(), rounded, wrong, differing })
+        Ok(SceneRow { id: id.to_owned(), test, rays: traced.into_inner(), rounded, wrong, differing })
     }
 
-    fn chunk(
+    fn part(
         &self,
         test: TestKind,
         accel: &dyn Accel,
-        first: usize,
         rays: &[Ray],
+        which: &[usize],
         cancel: &Cancel,
     ) -> Result<Vec<DifferingRay>, Cancelled> {
+        let rays: Vec<Ray> = which.iter().map(|i| rays[*i]).collect();
         let (mut hits, mut exact) = (vec![None; rays.len()], vec![None; rays.len()]);
-        accel.trace(rays, Mode::Closest, &mut hits, cancel)?;
-        self.accel.trace(rays, Mode::Closest, &mut exact, cancel)?;
+        accel.trace(&rays, Mode::Closest, &mut hits, cancel)?;
+        self.accel.trace(&rays, Mode::Closest, &mut exact, cancel)?;
         let geometry = accel.geometry();
         let mut differing = Vec::new();
         for (i, ray) in rays.iter().enumerate() {
@@ -121,7 +141,7 @@ impl Reference {
             }
             cancel.check()?;
             let why = self.expected(test, &entered.ray).judge(geometry, &entered.back, hit.as_ref()).err();
-            differing.push(DifferingRay { ray: first + i, why, t: exact.map_or(f32::INFINITY, |hit| hit.t) });
+            differing.push(DifferingRay { ray: which[i], why, t: exact.map_or(f32::INFINITY, |hit| hit.t) });
         }
         Ok(differing)
     }
@@ -171,7 +191,9 @@ mod tests {
         let entry = registry::find("kdtree").expect("registered");
         let accel = entry.build(&geometry, test, &entry.defaults(), &cx).expect("builds");
         let reference = Reference::build(&geometry, closed, &cx).expect("builds");
-        reference.compare(("kdtree", test), accel.as_ref(), &trial.rays, &cx.pool, &cx.cancel).expect("not cancelled")
+        reference
+            .compare(("kdtree", test), accel.as_ref(), &trial.rays, f64::INFINITY, &cx.pool, &cx.cancel)
+            .expect("not cancelled")
     }
 
     #[test]

@@ -123,15 +123,16 @@ fn structures(ui: &mut Ui, state: &State, check: &ModelCheck, commands: &mut Com
     heading(ui, "Beside exact arithmetic");
     for (i, row) in check.structures.iter().enumerate() {
         let chosen = state.checks.marked == Some(i);
-        let figures =
-            format!("{}: {} wrong, {} rounded", row.id, format::count(row.wrong as u64), format::count(row.rounded as u64));
-        let help = "Rays answered wrongly, and rays answered otherwise than exactly as rounding may have it. Click to see them.";
-        if ui.selectable_label(chosen, figures).on_hover_text(help).clicked() {
+        let [wrong, rounded, rays] = [row.wrong, row.rounded, row.rays].map(|n| format::count(n as u64));
+        let figures = format!("{}: {wrong} wrong, {rounded} rounded", row.id);
+        let help =
+            "rays traced. Wrong ones, and those answered otherwise than exactly as rounding may have it: click to see them.";
+        if ui.selectable_label(chosen, figures).on_hover_text(format!("{rays} {help}")).clicked() {
             commands.push(Command::MarkModel((!chosen).then_some(i)));
         }
     }
     if let Some(row) = check.structures.first() {
-        let rays = format::count(row.rays as u64);
-        empty(ui, &format!("Of {rays} rays, {} test.", row.test.id()));
+        let rays = format::count(check.rays.len() as u64);
+        empty(ui, &format!("Of {rays} rays, or a part of them where a structure is slow; {} test.", row.test.id()));
     }
 }

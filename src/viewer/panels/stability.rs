@@ -24,6 +24,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| button(ui, state, commands));
     });
     if state.checks.cases.is_empty() && state.checks.running.is_none() {
+        // As high as the matrix will be.
+        ui.set_min_height(ui.available_height());
         empty(ui, "Scenes and rays that are known to break ray tracers, through every structure with every triangle test,");
         empty(ui, "each answer held against arithmetic that does not round. It takes a minute or two.");
         return;
