@@ -3,15 +3,16 @@
 //!
 //! With `A`, `B`, `C` the corners seen from the ray's origin, and `d` its direction, the line passes the three edges on
 //! the sides that the signs of `d.(B x C)`, `d.(C x A)` and `d.(A x B)` say, and meets the plane at
-//! `t = A.(B x C) / (their sum)`. Three steps, each for what the one before could not decide:
+//! `t = A.(B x C) / (their sum) = A.N / d.N` with `N = (A - C) x (B - A)`. Three steps, each for what the one before could not decide:
 //!
 //! 1. Eight triangles in 32 bits. A corner is moved and sheared as in the watertight test, but multiplied by `d_z`
 //!    instead of divided, which displaces it by at most `r = 6uD` (u the unit roundoff, D the greatest distance from the
 //!    origin to the scene in any component; see [`crate::geometry::slabs`]). With `m` the greatest coordinate of the
 //!    three, an edge function of products is off by at most `4rm + 2r^2` for the displacements and `4u m^2 < 2rm` for its
 //!    own roundings (`m < 2D`), so a sign is certain beyond `8r(m + r)`. Two certain signs that differ: a miss.
-//! 2. In 64 bits, with u = 2^-53: differences of 32-bit numbers, two products and three sums make at most nine
-//!    roundings in each of six terms, so `d.(B x C)` is off by at most `64u |d| |B| |C|`, greatest components taken.
+//! 2. In 64 bits, with u = 2^-53: `d.(B x C) = d.(B x (C - B))`, which is as small as the edge is, however far the origin
+//!    is. Two differences of 32-bit numbers, two products and three sums make seven roundings in each of six
+//!    terms, so it is off by at most `64u |d| |B| |C - B|`, greatest components taken; and `A.N` and `d.N` likewise.
 //! 3. Exactly: [`Expansion`].
 //!
 //! A ray through an edge or a corner, to the bit, hits all triangles that share it, at the same t. A ray in a
@@ -24,7 +25,7 @@ use crate::geometry::expansion::Expansion;
 use crate::geometry::num::{max, min, narrow};
 use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::Simd;
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// See above.
 #[derive(Clone, Copy, Debug)]
@@ -139,15 +140,18 @@ fn in_64_bits<S: Simd>(s: S, own: &Own<S::F>, corners: &[Points<S::F>; 3], doubt
     let &[ox, oy, oz, dx, dy, dz, _] = own;
     let (o, d) = (wide(s, Points { x: ox, y: oy, z: oz }), wide(s, Points { x: dx, y: dy, z: dz }));
     let [a, b, c] = *corners;
-    let (a, b, c) = (less(s, wide(s, a), o), less(s, wide(s, b), o), less(s, wide(s, c), o));
-    let of_bc = cross(s, b, c);
-    let (u, v, w) = (dot(s, d, of_bc), dot(s, d, cross(s, c, a)), dot(s, d, cross(s, a, b)));
-    let (of_a, of_b, of_c) = (greatest(s, a), greatest(s, b), greatest(s, c));
-    let bound = s.mul_double(s.splat_double(BOUND), greatest(s, d));
+    let (a, b, c) = (wide(s, a), wide(s, b), wide(s, c));
+    let (ab, bc, ca) = (less(s, b, a), less(s, c, b), less(s, a, c));
+    let (a, b, c) = (less(s, a, o), less(s, b, o), less(s, c, o));
+    let (u, v, w) = (dot(s, d, cross(s, b, bc)), dot(s, d, cross(s, c, ca)), dot(s, d, cross(s, a, ab)));
+    let (of_a, of_b, of_c) = (sizes(s, a), sizes(s, b), sizes(s, c));
+    let (of_ab, of_bc, of_ca) = (sizes(s, ab), sizes(s, bc), sizes(s, ca));
+    let factor = s.splat_double(BOUND);
+    let bound = s.mul_double(factor, sizes(s, d));
     let bounds = [
-        s.mul_double(s.mul_double(bound, of_b), of_c),
-        s.mul_double(s.mul_double(bound, of_c), of_a),
-        s.mul_double(s.mul_double(bound, of_a), of_b),
+        s.mul_double(s.mul_double(bound, of_b), of_bc),
+        s.mul_double(s.mul_double(bound, of_c), of_ca),
+        s.mul_double(s.mul_double(bound, of_a), of_ab),
     ];
     let (size_u, size_v, size_w) = (s.abs_double(u), s.abs_double(v), s.abs_double(w));
     let certain = s.and(s.lt_double(bounds[0], size_u), s.and(s.lt_double(bounds[1], size_v), s.lt_double(bounds[2], size_w)));
@@ -155,13 +159,12 @@ fn in_64_bits<S: Simd>(s: S, own: &Own<S::F>, corners: &[Points<S::F>; 3], doubt
     let least = s.min_double(s.min_double(u, v), w);
     let most = s.max_double(s.max_double(u, v), w);
     let one_sign = s.or(s.lt_double(zero, least), s.lt_double(most, zero));
-    let (above, below) = (dot(s, a, of_bc), s.add_double(s.add_double(u, v), w));
-    let sizes = s.add_double(s.add_double(size_u, size_v), size_w);
-    let sum = s.add_double(s.add_double(bounds[0], bounds[1]), bounds[2]);
-    let of_below = s.add_double(sum, s.mul_double(s.splat_double(2.0 * f64::EPSILON), sizes));
+    let normal = cross(s, ca, ab);
+    let (above, below) = (dot(s, a, normal), dot(s, d, normal));
+    let of_above = s.mul_double(s.mul_double(s.mul_double(factor, of_a), of_ca), of_ab);
+    let of_below = s.mul_double(s.mul_double(bound, of_ca), of_ab);
     let inverse = s.div_double(s.splat_double(1.0), below);
     let t = s.mul_double(above, inverse);
-    let of_above = s.mul_double(s.mul_double(s.mul_double(s.splat_double(BOUND), of_a), of_b), of_c);
     let size_t = s.abs_double(t);
     let of_both = s.add_double(of_above, s.mul_double(size_t, of_below));
     let relative = s.mul_double(s.splat_double(2.0 * f64::EPSILON), size_t);
@@ -219,9 +222,9 @@ fn dot<S: Simd>(s: S, a: Doubles<S>, b: Doubles<S>) -> S::D {
     s.add_double(s.add_double(s.mul_double(a[0], b[0]), s.mul_double(a[1], b[1])), s.mul_double(a[2], b[2]))
 }
 
-/// The greatest coordinate without its sign.
+/// As [`greatest`].
 #[inline(always)]
-fn greatest<S: Simd>(s: S, p: Doubles<S>) -> S::D {
+fn sizes<S: Simd>(s: S, p: Doubles<S>) -> S::D {
     s.max_double(s.max_double(s.abs_double(p[0]), s.abs_double(p[1])), s.abs_double(p[2]))
 }
 
@@ -268,16 +271,25 @@ fn beside(p: Vec3, d: Vec3) -> Vec2 {
 /// The bound of the second step, of the product of the three greatest components.
 const BOUND: f64 = 64.0 * (f64::EPSILON / 2.0);
 
+/// The greatest coordinate without its sign.
+#[inline(always)]
+fn greatest(p: DVec3) -> f64 {
+    p.abs().max_element()
+}
+
 /// The second and the third step.
 #[inline(never)]
 fn meet(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> Option<TriHit> {
     let (o, d) = (origin.as_dvec3(), dir.as_dvec3());
-    let (a, b, c) = (tri[0].as_dvec3() - o, tri[1].as_dvec3() - o, tri[2].as_dvec3() - o);
-    let of_bc = b.cross(c);
-    let (u, v, w) = (d.dot(of_bc), d.dot(c.cross(a)), d.dot(a.cross(b)));
-    let (of_a, of_b, of_c) = (a.abs().max_element(), b.abs().max_element(), c.abs().max_element());
-    let bound = BOUND * d.abs().max_element();
-    let bounds = [bound * of_b * of_c, bound * of_c * of_a, bound * of_a * of_b];
+    let (a, b, c) = (tri[0].as_dvec3(), tri[1].as_dvec3(), tri[2].as_dvec3());
+    // Before the origin is taken off: afterwards the edges would be rounded as the corners are.
+    let (ab, bc, ca) = (b - a, c - b, a - c);
+    let (a, b, c) = (a - o, b - o, c - o);
+    let (u, v, w) = (d.dot(b.cross(bc)), d.dot(c.cross(ca)), d.dot(a.cross(ab)));
+    let (of_a, of_b, of_c) = (greatest(a), greatest(b), greatest(c));
+    let (of_ab, of_bc, of_ca) = (greatest(ab), greatest(bc), greatest(ca));
+    let bound = BOUND * greatest(d);
+    let bounds = [bound * of_b * of_bc, bound * of_c * of_ca, bound * of_a * of_ab];
     let certain = |value: f64, bound: f64| value.abs() > bound;
     let signs = if certain(u, bounds[0]) && certain(v, bounds[1]) && certain(w, bounds[2]) {
         [u, v, w]
@@ -286,16 +298,15 @@ fn meet(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> Option<TriHit> {
         let [a, b, c] = *tri;
         [[b, c], [c, a], [a, b]].map(exactly)
     };
-    let (least, greatest) = (signs[0].min(signs[1]).min(signs[2]), signs[0].max(signs[1]).max(signs[2]));
-    if least < 0.0 && greatest > 0.0 || (least == 0.0 && greatest == 0.0) {
+    let (least, most) = (signs[0].min(signs[1]).min(signs[2]), signs[0].max(signs[1]).max(signs[2]));
+    if least < 0.0 && most > 0.0 || (least == 0.0 && most == 0.0) {
         return None;
     }
-    let (above, below) = (a.dot(of_bc), u + v + w);
-    // The sum of the three, whose signs do not differ by more than their bounds, is rounded twice.
-    let of_below = bounds[0] + bounds[1] + bounds[2] + 2.0 * f64::EPSILON * (u.abs() + v.abs() + w.abs());
+    let normal = ca.cross(ab);
+    let (above, below) = (a.dot(normal), d.dot(normal));
+    let (of_above, of_below) = (BOUND * of_a * of_ca * of_ab, bound * of_ca * of_ab);
     let inverse = 1.0 / below;
-    let t = above * inverse;
-    let t = rounded([t, BOUND * of_a * of_b * of_c], [below, of_below]).unwrap_or_else(|| exact_t(origin, dir, tri));
+    let t = rounded([above * inverse, of_above], [below, of_below]).unwrap_or_else(|| exact_t(origin, dir, tri));
     // Of a sliver seen edge on 64 bits may not even know the sign.
     let weight = |x: f64| narrow((x * inverse).clamp(0.0, 1.0));
     let (u, v) = if below.abs() > of_below { (weight(v), weight(w)) } else { (1.0 / 3.0, 1.0 / 3.0) };

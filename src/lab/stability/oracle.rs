@@ -63,22 +63,31 @@ pub fn passings_of(geometry: &Geometry, ray: &Ray, prims: impl Iterator<Item = P
             let (entry, exit) = slabs.interval(&Aabb::of_triangle(&tri));
             entry <= exit
         };
-        (least >= -near || greatest <= near || reported()).then(|| passing(ray, prim, &tri, [a, b, c], sides))
+        (least >= -near || greatest <= near || reported()).then(|| passing(ray, prim, &tri))
     };
     prims.filter_map(close).collect()
 }
 
-fn passing(ray: &Ray, prim: PrimRef, tri: &[Vec3; 3], [a, b, c]: [DVec3; 3], sides: [f64; 3]) -> Passing {
-    let size = [a, b, c].map(|p| p.abs().max_element());
-    let long = ray.dir.as_dvec3().abs().max_element();
-    let error = |i: usize, j: usize| OF_64 * long * size[i] * size[j];
-    let errors = [error(1, 2), error(2, 0), error(0, 1)];
-    let certain = (0..3).all(|i| sides[i].abs() > errors[i]);
-    let below = sides.iter().sum::<f64>();
-    let of_below = errors.iter().sum::<f64>() + 2.0 * f64::EPSILON * sides.iter().map(|s| s.abs()).sum::<f64>();
-    if certain && below.abs() > 4.0 * of_below {
-        let t = a.dot(b.cross(c)) / below;
-        let of_t = 2.0 * (OF_64 * size[0] * size[1] * size[2] + t.abs() * of_below) / below.abs() + f64::EPSILON * t.abs();
+fn passing(ray: &Ray, prim: PrimRef, tri: &[Vec3; 3]) -> Passing {
+    let (o, d, points) = (ray.origin.as_dvec3(), ray.dir.as_dvec3(), tri.map(|p| p.as_dvec3()));
+    let corners = points.map(|p| p - o);
+    // From a corner along the edge to the next: `d.(B x C) = d.(B x (C - B))`, and its error is as small as the edge.
+    let edge = |i: usize, j: usize| points[j] - points[i];
+    let size = |p: DVec3| p.abs().max_element();
+    let side = |i: usize, j: usize| {
+        let edge = edge(i, j);
+        (d.dot(corners[i].cross(edge)), OF_64 * size(d) * size(corners[i]) * size(edge))
+    };
+    let found = [side(1, 2), side(2, 0), side(0, 1)];
+    let sides = found.map(|(value, _)| value);
+    let (x, y) = (edge(0, 1), edge(0, 2));
+    let normal = x.cross(y);
+    let (above, below) = (corners[0].dot(normal), d.dot(normal));
+    let of_above = OF_64 * size(corners[0]) * size(x) * size(y);
+    let of_below = OF_64 * size(d) * size(x) * size(y);
+    if found.iter().all(|(value, error)| value.abs() > *error) && below.abs() > 4.0 * of_below {
+        let t = above / below;
+        let of_t = 2.0 * (of_above + t.abs() * of_below) / below.abs() + f64::EPSILON * t.abs();
         let rounded = narrow(t);
         if narrow(t - of_t) == narrow(t + of_t) {
             return Passing { prim, sides, signs: sides.map(|s| s.signum() as i8), t: Some((t, rounded)) };
