@@ -4,13 +4,14 @@
 mod common;
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use boxwood::accel::{Accel, BuildCx, registry};
 use boxwood::geometry::tri::TestKind;
 use boxwood::lab::stability::{Options, Verdict, cases, check_case};
-use boxwood::lab::{RayKind, RaySet};
+use boxwood::lab::{CheckError, Checked, RayKind, RaySet, check_model};
 use boxwood::render::{Job, Mode};
-use boxwood::scene::Camera;
+use boxwood::scene::{Camera, LoadCx, Reason, builtin};
 use boxwood::task::{Cancel, Pool};
 use glam::Vec3;
 
@@ -54,6 +55,52 @@ fn cases_are_explained_and_the_same_for_the_same_seed() {
         assert_ne!(bits(&a), bits(&case.trial(6, 40)), "{}", case.id);
         assert!(cases::find(case.id).is_some());
     }
+}
+
+/// Where lists may have hardly any entries, structures refuse, and not only when it is too late.
+#[test]
+fn structures_refuse_what_they_cannot_index() {
+    let refused = |case: &str| {
+        let case = cases::find(case).expect("a case");
+        let outcome = check_case(case, &options(20), &BuildCx::unattended(2), &|| ()).expect("fits");
+        let refused = outcome.structures.iter().filter(|row| row.error.is_some() && row.test == TestKind::Watertight);
+        refused.map(|row| row.id).collect::<Vec<_>>()
+    };
+    assert_eq!(refused("indices-300"), ["bvh", "wide", "volumes", "kdtree", "grid", "grid2", "octree", "bsp"]);
+    assert_eq!(refused("indices-1000"), ["kdtree", "grid", "grid2", "octree", "bsp"]);
+    assert!(refused("indices-3000").len() < 5, "{:?}", refused("indices-3000"));
+}
+
+/// Runs something on a thread, stops it in the middle, and says how long it took to answer.
+fn stopped<T: Send>(cancel: &Cancel, work: impl FnOnce() -> T + Send) -> (T, Duration) {
+    std::thread::scope(|scope| {
+        let job = scope.spawn(work);
+        std::thread::sleep(Duration::from_millis(150));
+        let asked = Instant::now();
+        cancel.cancel();
+        let out = job.join().expect("no panic");
+        (out, asked.elapsed())
+    })
+}
+
+#[test]
+fn the_lab_and_the_check_of_a_model_stop_when_asked() {
+    let cx = BuildCx::unattended(2);
+    let all = Options { seed: 1, ..options(20_000) };
+    let run = || cases::ALL.iter().try_for_each(|case| check_case(case, &all, &cx, &|| ()).map(drop));
+    let (out, took) = stopped(&cx.cancel, run);
+    assert!(matches!(out, Err(Reason::Cancelled(_))) && took < Duration::from_millis(100), "{took:?}");
+
+    let cx = BuildCx::unattended(2);
+    let scene = Arc::new(builtin::generate("terrain?triangles=200000", &LoadCx::unattended()).expect("fits"));
+    let geometry = common::geometry_of(&scene);
+    let entry = registry::find("brute").expect("registered");
+    let accel: Arc<dyn Accel> = Arc::from(common::build(entry, &geometry, TestKind::Watertight));
+    let checked = [Checked { id: "brute".into(), test: TestKind::Watertight, accel }];
+    let camera = Camera::framing(geometry.world_bounds(), Vec3::ONE, Vec3::Z, 1.0);
+    let (out, took) =
+        stopped(&cx.cancel, || check_model((&scene, &geometry), &checked, (camera, [400, 400]), f64::INFINITY, &cx));
+    assert!(matches!(out, Err(CheckError::Cancelled(_))) && took < Duration::from_millis(100), "{took:?}");
 }
 
 /// Eight triangles, each cut into four again and again, its corners on the sphere: every edge bends outwards.

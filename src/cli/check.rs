@@ -1,19 +1,16 @@
 //! `boxwood check`: what about a model is known to make ray tracers err, and where structures err on it.
 
-use std::sync::Arc;
-
 use serde::Serialize;
 
 use super::args::{LookArgs, ModelArgs, Size, seconds};
+use super::bar;
 use super::context::Context;
 use super::failure::Failure;
 use super::output::{print, print_json};
 use super::structures::{BuildArgs, Many};
 use super::table::{Table, facts};
-use super::{bar, rays};
 use crate::lab::format::{count, number};
 use crate::lab::{CheckError, Checked, MachineFacts, MeshCheck, ModelCheck, SceneFacts, check_model};
-use crate::render::{Job, Mode};
 use crate::scene::CameraSpec;
 use crate::task::Cancel;
 
@@ -24,7 +21,7 @@ pub struct Args {
     /// The structures that are held against exact arithmetic: ids between commas, or all.
     #[arg(long, value_name = "all|ID,ID", default_value = "bvh,wide,kdtree")]
     structures: Many,
-    /// The picture whose rays are traced: those of the view, and as many diffuse ones from what it sees.
+    /// The picture whose rays are traced: those of the view, and a diffuse one from each surface that they meet.
     #[arg(long, value_name = "WxH", default_value = "320x200")]
     size: Size,
     /// The most seconds for the rays of a structure; a slower one traces an evenly spread part of them.
@@ -60,17 +57,17 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         structures.push(Checked { id: entry.id.to_owned(), test: args.build.test, accel });
     }
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
-    let job = Job { scene: Arc::clone(&model.scene), accel: rays::finder(&model, &cx)?, camera, mode: Mode::Shaded };
-    let size = [args.size.width, args.size.height];
+    let scene = model.facts();
+    let view = (camera, [args.size.width, args.size.height]);
+    let model = (&model.scene, &model.geometry);
     let build_cx = cx.build_cx();
-    let check =
-        bar::watch("check", &build_cx.progress, || check_model(&model.geometry, &structures, &job, size, args.secs, &build_cx));
+    let check = bar::watch("check", &build_cx.progress, || check_model(model, &structures, view, args.secs, &build_cx));
     let check = check.map_err(|error| match error {
         CheckError::Cancelled(_) => Failure::Cancelled,
         error => Failure::Other(error.into()),
     })?;
     let wrong = check.structures.iter().map(|row| row.wrong).sum::<usize>();
-    let outcome = Outcome { scene: model.facts(), machine: cx.machine(), closed: check.mesh.is_closed(), check };
+    let outcome = Outcome { scene, machine: cx.machine(), closed: check.mesh.is_closed(), check };
     if args.json { print_json(&outcome) } else { print(&text(&args.model.model, &outcome)) }?;
     if wrong == 0 { Ok(()) } else { Err(Failure::Other(anyhow::anyhow!("{} rays were answered wrongly", count(wrong as u64)))) }
 }
@@ -93,14 +90,14 @@ fn text(model: &str, outcome: &Outcome) -> String {
     format!("{text}\n{}{LEGEND}", table.render())
 }
 
-const LEGEND: &str = "\nrounded: rays answered otherwise than exactly, as the rounding of the test may have it. wrong: answers that no \
-    rounding explains, or rays that slipped through a closed surface.\n";
+const LEGEND: &str = "\nrounded: rays that meet another triangle than they do exactly, or none, as the rounding of the test may have it. wrong: \
+    answers that no rounding explains, or rays that slipped through a closed surface.\n";
 
 fn figures(model: &str, mesh: &MeshCheck) -> [(&'static str, String); 9] {
     [
         ("model", model.to_owned()),
         ("triangles", count(mesh.triangles)),
-        ("surface", if mesh.is_closed() { "closed" } else { "open" }.to_owned()),
+        ("surface", mesh.surface().to_owned()),
         ("slivers", format!("{}, worst aspect {}", count(mesh.slivers), number(mesh.worst_aspect))),
         ("no area", count(mesh.degenerate)),
         ("not finite", count(mesh.non_finite)),

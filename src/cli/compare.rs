@@ -9,7 +9,7 @@ use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
 use super::quality::QualityArgs;
-use super::structures::{BuildArgs, Racers};
+use super::structures::{BuildArgs, Racers, each_once};
 use super::table::facts;
 use super::{bar, outcome, quality, rays, stats};
 use crate::accel::Accel;
@@ -57,7 +57,7 @@ pub struct Args {
     #[arg(long)]
     best: bool,
     /// Triangle tests that race each other, between commas: each structure is built with each [default: that of --test].
-    #[arg(long, value_name = "TESTS", value_delimiter = ',')]
+    #[arg(long, value_name = "TESTS", value_delimiter = ',', conflicts_with = "test")]
     tests: Vec<TestKind>,
     #[command(flatten)]
     look: LookArgs,
@@ -96,16 +96,18 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let cx = Context::new(args.model.machine, cancel);
     let model = cx.load(&args.model.model)?;
 
-    let (mut structures, mut contestants) = (Vec::new(), Vec::new());
+    let (mut structures, mut accels) = (Vec::new(), Vec::new());
     let (tests, options) = (args.tests(), args.how.options(args.quality));
     let choices = entries.iter().zip(&params).flat_map(|choice| tests.iter().map(move |test| (choice, *test)));
     for ((entry, params), test) in choices {
         let (row, built) = stats::row(entry, test, (params, &options), &model, &cx)?;
-        let id = if tests.len() == 1 { row.id.clone() } else { format!("{} {}", row.id, test.id()) };
-        contestants.extend(built.map(|built| Contestant { id, accel: built.accel }));
+        accels.extend(built.map(|built| built.accel));
         structures.push(row);
     }
     let mut report = Report { scene: model.facts(), machine: cx.machine(), structures };
+    let built = report.structures.iter().filter(|row| row.built.is_some());
+    let contestants: Vec<Contestant> =
+        built.zip(accels).map(|(row, accel)| Contestant { id: report.label(row), accel }).collect();
     let mut drawn = None;
     if !contestants.is_empty() || raster {
         let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
@@ -122,15 +124,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 impl Args {
     /// The triangle tests asked for, each once.
     fn tests(&self) -> Vec<TestKind> {
-        let mut tests = if self.tests.is_empty() { vec![self.build.test] } else { self.tests.clone() };
-        let mut seen = Vec::new();
-        tests.retain(|test| {
-            !seen.contains(test) && {
-                seen.push(*test);
-                true
-            }
-        });
-        tests
+        each_once(if self.tests.is_empty() { vec![self.build.test] } else { self.tests.clone() })
     }
 
     /// The kinds of rays asked for, each once.

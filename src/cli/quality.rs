@@ -62,10 +62,10 @@ pub fn text(report: &Report) -> String {
     let rows: Vec<(&StructureRow, &Quality)> =
         report.structures.iter().filter_map(|row| Some((row, row.quality.as_ref()?))).collect();
     let fitted = report.structures.iter().any(|row| row.costs.is_some());
-    qualities(&rows) + &if fitted { costs(report) } else { String::new() }
+    qualities(report, &rows) + &if fitted { costs(report) } else { String::new() }
 }
 
-fn qualities(rows: &[(&StructureRow, &Quality)]) -> String {
+fn qualities(report: &Report, rows: &[(&StructureRow, &Quality)]) -> String {
     let Some((_, first)) = rows.first() else { return String::new() };
     let deep = first.lines.is_some();
     let mut headers = vec!["structure", "overlap", "empty", "refs/tri", "nodes/line", "tests/line"];
@@ -75,17 +75,17 @@ fn qualities(rows: &[(&StructureRow, &Quality)]) -> String {
     }
     let (mut table, mut notes) = (Table::new(&headers), String::new());
     for (row, quality) in rows {
-        table.row(cells(row, quality, deep));
+        table.row(cells(report.label(row), quality, deep));
         if let Some(why) = &quality.epo_missing {
-            notes += &format!("{}: no EPO: {why}\n", row.id);
+            notes += &format!("{}: no EPO: {why}\n", report.label(row));
         }
     }
     table.render() + &notes + &legend(deep)
 }
 
-fn cells(row: &StructureRow, quality: &Quality, deep: bool) -> Vec<String> {
+fn cells(label: String, quality: &Quality, deep: bool) -> Vec<String> {
     let mut cells = vec![
-        row.id.clone(),
+        label,
         or_missing(quality.overlap, number),
         or_missing(quality.empty_volume, percent),
         or_missing(quality.duplication, number),
@@ -121,7 +121,7 @@ fn costs(report: &Report) -> String {
     let headers = ["structure", "C_trav ns", "±", "C_isect ns", "±", "C_0 ns", "±", "R²", "C_isect/C_trav", "expected ns/line"];
     let mut table = Table::new(&headers);
     for row in report.structures.iter().filter(|row| row.built.is_some()) {
-        let mut cells = vec![row.id.clone()];
+        let mut cells = vec![report.label(row)];
         match &row.costs {
             Some(CostRow { costs: c, ratio, expected_ns }) => {
                 let fitted = [c.c_trav_ns, c.c_trav_error_ns, c.c_isect_ns, c.c_isect_error_ns, c.c0_ns, c.c0_error_ns];

@@ -146,7 +146,7 @@ pub fn structures(report: &Report) -> String {
         }
         table.row(cells);
         if let Some(error) = &row.error {
-            reasons.push_str(&format!("{} is not there: {error}\n", row.id));
+            reasons.push_str(&format!("{} is not there: {error}\n", report.label(row)));
         }
     }
     table.render() + &reasons

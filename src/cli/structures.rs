@@ -33,6 +33,17 @@ impl FromStr for One {
     }
 }
 
+/// The same without repetitions.
+pub fn each_once<T: PartialEq + Copy>(all: Vec<T>) -> Vec<T> {
+    let mut once: Vec<T> = Vec::with_capacity(all.len());
+    for one in all {
+        if !once.contains(&one) {
+            once.push(one);
+        }
+    }
+    once
+}
+
 /// `all`, or ids between commas.
 #[derive(Clone, Debug)]
 pub struct Many(pub Vec<&'static Entry>);

@@ -105,7 +105,13 @@ pub fn check(geometry: &Geometry, cx: &BuildCx) -> Result<MeshCheck, Reason> {
         corners.sort_unstable();
         corners
     };
-    in_shares(live, cx, in_order, |corners| corners[0].into(), |sorted| duplicates += sorted.len() - runs(sorted).count())?;
+    in_shares(
+        live,
+        cx,
+        in_order,
+        |[a, b, c]| mixed(u128::from(*a) << 96 | u128::from(*b) << 64 | u128::from(*c) << 32),
+        |sorted| duplicates += sorted.len() - runs(sorted).count(),
+    )?;
 
     let (mut edges, mut boundary_edges, mut non_manifold_edges) = (0u64, 0, 0);
     let edge = |i: usize| {
@@ -120,7 +126,7 @@ pub fn check(geometry: &Geometry, cx: &BuildCx) -> Result<MeshCheck, Reason> {
             non_manifold_edges += u64::from(run.len() > 2);
         }
     };
-    in_shares(3 * live, cx, edge, |edge| edge >> 32, count_edges)?;
+    in_shares(3 * live, cx, edge, |edge| mixed(u128::from(*edge) << 64), count_edges)?;
 
     Ok(MeshCheck {
         triangles: geometry.triangle_count() as u64,
@@ -143,6 +149,16 @@ impl MeshCheck {
     pub fn is_closed(&self) -> bool {
         let live = self.triangles.saturating_sub(self.non_finite + self.degenerate);
         live > 0 && self.boundary_edges == 0 && self.non_manifold_edges == 0 && self.duplicates == 0
+    }
+
+    /// What kind of surface it is, in a word or three.
+    pub fn surface(&self) -> &'static str {
+        match self {
+            _ if self.is_closed() => "closed",
+            Self { boundary_edges: 1.., .. } => "open",
+            Self { edges: 0, .. } => "none",
+            _ => "branching or copied",
+        }
     }
 
     /// What is worth saying, each with what helps; nothing of an ordinary closed model.
@@ -294,13 +310,14 @@ fn in_shares<T: Copy + Ord + Send + Sync>(
     let bytes = |keys: usize| (3 * keys * size_of::<T>()) as u64;
     let mut memory = cx.budget.charge(bytes(count.min(SHARE)))?;
     for share in 0..shares {
+        let is_in = |key: &T| share_of(key) % shares == share;
+        let keys: usize = in_chunks(count, cx, |chunk| chunk.map(&key).filter(is_in).count())?.into_iter().sum();
+        memory.grow(bytes(keys).saturating_sub(memory.bytes()))?;
         let parts: Vec<Vec<T>> = in_chunks(count, cx, |chunk| {
-            let keys: Vec<T> = chunk.map(&key).filter(|key| share_of(key) % shares == share).collect();
+            let keys: Vec<T> = chunk.map(&key).filter(is_in).collect();
             cx.progress.advance(keys.len() as u64);
             keys
         })?;
-        let keys: usize = parts.iter().map(Vec::len).sum();
-        memory.grow(bytes(keys).saturating_sub(memory.bytes()))?;
         let mut list = parts.concat();
         drop(parts);
         cx.pool.run(|| sort::by_value(&mut list, &cx.cancel))?;

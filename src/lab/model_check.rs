@@ -11,8 +11,8 @@ use super::stability::{Reference, SceneRow};
 use crate::accel::{Accel, BuildCx, BuildError};
 use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
-use crate::render::Job;
-use crate::scene::{Geometry, Reason};
+use crate::render::{Job, Mode};
+use crate::scene::{Camera, Geometry, Reason, Scene};
 use crate::task::Cancelled;
 
 /// A structure that is checked.
@@ -70,24 +70,24 @@ impl From<BuildError> for CheckError {
     }
 }
 
-/// Checks the triangles and all structures, which were built over them, on the rays of a picture from the job's camera, as
-/// many as each structure takes in about `secs` seconds.
+/// Checks the triangles and all structures, which were built over them, on the rays of a picture, as many as each structure
+/// takes in about `secs` seconds.
 ///
 /// # Errors
 /// Cancelled, or over the memory budget.
 pub fn check_model(
-    geometry: &Arc<Geometry>,
+    (scene, geometry): (&Arc<Scene>, &Arc<Geometry>),
     structures: &[Checked],
-    job: &Job,
-    [width, height]: [u32; 2],
+    (camera, [width, height]): (Camera, [u32; 2]),
     secs: f64,
     cx: &BuildCx,
 ) -> Result<ModelCheck, CheckError> {
     let mesh = check(geometry, cx)?;
     let reference = Reference::build(geometry, mesh.is_closed(), cx)?;
+    let job = Job { scene: Arc::clone(scene), accel: Arc::clone(&reference.accel), camera, mode: Mode::Shaded };
     let mut rays = Vec::new();
     for kind in [RayKind::Primary, RayKind::Diffuse] {
-        rays.extend(RaySet::generate(kind, job, width, height, &cx.pool, &cx.cancel)?.rays);
+        rays.extend(RaySet::generate(kind, &job, width, height, &cx.pool, &cx.cancel)?.rays);
     }
     cx.progress.start("compare", structures.len() as u64);
     let mut rows = Vec::with_capacity(structures.len());

@@ -49,6 +49,14 @@ pub struct StructureRow {
     pub rays: BTreeMap<RayKind, Timing>,
 }
 
+impl Report {
+    /// What a row is called in tables: with its triangle test where there is another row of that structure.
+    pub fn label(&self, row: &StructureRow) -> String {
+        let alone = self.structures.iter().filter(|other| other.id == row.id).count() < 2;
+        if alone { row.id.clone() } else { format!("{} {}", row.id, row.test.id()) }
+    }
+}
+
 /// Fitted costs, and what follows from them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CostRow {

@@ -7,6 +7,7 @@ use super::workers::{Checking, Stability};
 use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::lab::ModelCheck;
+use crate::lab::format::count;
 use crate::lab::stability::cases::{self, Case};
 use crate::lab::stability::{CaseRow, Row, Verdict};
 
@@ -32,6 +33,8 @@ pub struct Checks {
     pub checking: Option<Checking>,
     /// What is drawn over the view.
     pub marks: Vec<Mark>,
+    /// What that is, in words.
+    pub caption: String,
 }
 
 /// A cell of the matrix.
@@ -63,7 +66,7 @@ pub enum MarkKind {
     Wrong,
     /// Answered as rounding may have it.
     Rounded,
-    /// One of a case's rays that are all answered rightly.
+    /// One of a case's rays, as an example.
     Plain,
 }
 
@@ -87,8 +90,12 @@ impl Checks {
 
     /// Forgets what was of the model before.
     pub fn opened(&mut self) {
-        (self.model, self.checking, self.marked) = (None, None, None);
-        self.marks.clear();
+        (self.model, self.checking) = (None, None);
+        self.mark(Vec::new(), String::new());
+    }
+
+    fn mark(&mut self, marks: Vec<Mark>, caption: String) {
+        (self.marked, self.marks, self.caption) = (None, marks, caption);
     }
 
     /// Draws a cell's wrong rays; where there is none, some of the case's, so that one sees what it is about.
@@ -97,24 +104,39 @@ impl Checks {
         let of = |ray: &Ray, kind| Mark { ray: *ray, t: f32::INFINITY, kind };
         let wrong = row.wrong.iter().filter_map(|wrong| rays.get(wrong.ray)).map(|ray| of(ray, MarkKind::Wrong));
         let mut marks: Vec<Mark> = wrong.collect();
+        let mut caption = format!(
+            "{} of {} rays that {}, {} answers wrongly",
+            marks.len(),
+            count((row.clear_wrong + row.boundary_wrong) as u64),
+            row.id,
+            row.test.id()
+        );
         if marks.is_empty() {
             let step = rays.len().div_ceil(EXAMPLES).max(1);
             marks.extend(rays.iter().step_by(step).filter(|ray| ray.is_valid()).map(|ray| of(ray, MarkKind::Plain)));
         }
-        self.marks = marks;
+        if marks.iter().any(|mark| mark.kind == MarkKind::Plain) {
+            caption = format!("{} of the case's {} rays", marks.len(), count(rays.len() as u64));
+        }
+        self.mark(marks, caption);
     }
 
     /// Draws the rays that one of the checked structures does not answer exactly, or none.
     pub fn mark_model(&mut self, which: Option<usize>) {
-        self.marked = which;
         let Some((check, row)) = self.model.as_ref().and_then(|check| Some((check, check.structures.get(which?)?))) else {
-            self.marks.clear();
-            return;
+            return self.mark(Vec::new(), String::new());
         };
         let mark = |ray: &crate::lab::stability::DifferingRay| {
             let kind = if ray.why.is_some() { MarkKind::Wrong } else { MarkKind::Rounded };
             Some(Mark { ray: *check.rays.get(ray.ray)?, t: ray.t, kind })
         };
-        self.marks = row.differing.iter().filter_map(mark).collect();
+        let marks: Vec<Mark> = row.differing.iter().filter_map(mark).collect();
+        let all = row.wrong + row.rounded;
+        let caption = match all {
+            0 => format!("{}: every ray is answered exactly", row.id),
+            _ => format!("{} of {} rays that {} does not answer exactly", marks.len(), count(all as u64), row.id),
+        };
+        self.mark(marks, caption);
+        self.marked = which;
     }
 }

@@ -116,7 +116,7 @@ impl Choices {
     /// The kind of change that a command makes to them, if it makes one at once.
     pub const fn changed_by(command: &Command) -> Option<Kind> {
         match command {
-            Command::Structure(_) | Command::Test(_) => Some(Kind::Single),
+            Command::Structure(_) | Command::Test(_) | Command::OpenCase(_) => Some(Kind::Single),
             Command::Params(_) => Some(Kind::Params),
             Command::Overlay(_) => Some(Kind::Overlay),
             _ => None,

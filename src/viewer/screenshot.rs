@@ -76,7 +76,9 @@ impl Screenshot {
                 commands.push(Command::RunLab);
                 (self.check, self.stage) = (false, Stage::Checking);
             }
-            Stage::Checking if state.checks.running.is_none() && !state.checks.cases.is_empty() => {
+            Stage::Checking
+                if (state.checks.running.is_none() && !state.checks.cases.is_empty()) || self.start.elapsed() > PATIENCE =>
+            {
                 commands.extend(state.checks.first_slip().map(Command::OpenCase));
                 self.stage = Stage::Settling;
             }

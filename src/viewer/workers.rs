@@ -241,7 +241,8 @@ pub fn check_model(shared: &Shared, plan: Plan) -> std::io::Result<Checking> {
         let structures: Vec<Checked> = built.iter().map(checked).collect();
         // Half of the pixels on either axis.
         let size = [width.div_ceil(2), height.div_ceil(2)];
-        let check = lab::check_model(view.accel.geometry(), &structures, &view, size, CHECK_SECS, &cx)?;
+        let model = (&view.scene, view.accel.geometry());
+        let check = lab::check_model(model, &structures, (view.camera, size), CHECK_SECS, &cx)?;
         Ok((check, built))
     })
 }

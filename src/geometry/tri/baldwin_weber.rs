@@ -4,6 +4,7 @@
 use super::plain::Plain;
 use super::{Meets, Own, TestKind, TriHit, TriTest};
 use crate::geometry::eight::{Points, Rays};
+use crate::geometry::num;
 use crate::geometry::{Aabb, EightSlabs, Ray, Slabs};
 use crate::simd::Simd;
 use glam::Vec3;
@@ -13,7 +14,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transformation<F> {
     /// That axis; the others follow in turn.
-    pub axis: usize,
+    pub axis: u32,
     /// Barycentric weight of the second corner: of the two other axes, and what is added.
     pub u: [F; 3],
     /// Of the third corner.
@@ -21,6 +22,8 @@ pub struct Transformation<F> {
     /// The distance from the plane along the axis: of the two other axes, and what is added.
     pub w: [F; 3],
 }
+
+const _: () = assert!(size_of::<Transformation<f32>>() == 40);
 
 /// The operations that the test takes, so that its error can be worked out by the same lines that run it.
 pub trait Number: Copy {
@@ -100,7 +103,7 @@ impl<F: Number> Transformation<F> {
         let row = |px: F, py: F, added: F| [px.over(n), py.over(n), added.over(n)];
         let along = normal[0].times(a[0]).plus(normal[1].times(a[1])).plus(normal[2].times(a[2]));
         Self {
-            axis,
+            axis: num::index(axis),
             u: row(e2[y], zero.minus(e2[x]), minor(&e2, &a, x, y)),
             v: row(zero.minus(e1[y]), e1[x], minor(&a, &e1, x, y)),
             w: row(normal[x], normal[y], zero.minus(along)),
@@ -110,7 +113,8 @@ impl<F: Number> Transformation<F> {
     /// The t of the plane and the weights of the second and the third corner there.
     #[inline(always)]
     pub fn meet(&self, origin: Vec3, dir: Vec3) -> [F; 3] {
-        let ([x, y], z) = ([(self.axis + 1) % 3, (self.axis + 2) % 3], self.axis);
+        let z = self.axis as usize;
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         let (o, d) = (origin.to_array().map(F::of), dir.to_array().map(F::of));
         let linear = |row: &[F; 3], p: &[F; 3]| row[0].times(p[x]).plus(row[1].times(p[y]));
         let from = o[z].plus(linear(&self.w, &o)).plus(self.w[2]);

@@ -123,7 +123,7 @@ fn double(d: DVec3, [a, b, c]: [DVec3; 3]) -> Bounds {
 /// Baldwin and Weber: the error is carried along with the operations of the test. It may be as large as one likes for
 /// slivers, of which the stored transformation is hardly known.
 fn baldwin_weber(ray: &Ray, tri: &[Vec3; 3], d: DVec3, [a, b, c]: [DVec3; 3]) -> Bounds {
-    let axis = Transformation::<f32>::new(tri).axis;
+    let axis = Transformation::<f32>::new(tri).axis as usize;
     let [t, u, v] = Transformation::<Rounded>::along(tri, |_| axis).meet(ray.origin, ray.dir);
     let det = d.dot((b - a).cross(c - a)).abs();
     let side = |error: f64| if error.is_finite() { error * det } else { f64::INFINITY };

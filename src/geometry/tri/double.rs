@@ -43,7 +43,7 @@ impl TriTest for Double {
         t.is_finite().then(|| TriHit { t, u: narrow(v / det), v: narrow(w / det) })
     }
 
-    /// There are no lanes of 64 bits: each is tested by itself.
+    /// Each is tested by itself.
     #[inline(always)]
     fn meet_eight<S: Simd>(s: S, _: &Own<S::F>, _: &EightSlabs<S::F>, _: &[Points<S::F>; 3]) -> Meets<S> {
         Meets::doubtful(s)

@@ -19,7 +19,7 @@
 //! triangle's plane misses it.
 
 use super::watertight::{AXES, in_order, order_of, with_axes};
-use super::{Hits, Meets, Own, TestKind, TriHit, TriTest};
+use super::{Hits, Meets, Own, TestKind, TriHit, TriTest, splat_own};
 use crate::geometry::eight::{Points, Rays};
 use crate::geometry::expansion::Expansion;
 use crate::geometry::num::{max, min, narrow};
@@ -55,7 +55,7 @@ impl TriTest for Exact {
 
     #[inline(always)]
     fn meet(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
-        if self.surely_misses(tri) { None } else { self.meet_for_certain(tri) }
+        if self.surely_misses(tri) { None } else { self.meet_for_certain(tri, [f32::NEG_INFINITY, f32::INFINITY]) }
     }
 
     /// The interval of the triangle's box holds every exact t, and what that is rounded to: boxes are wider than any
@@ -67,7 +67,7 @@ impl TriTest for Exact {
 
     #[inline(always)]
     fn hit_in_doubt(&self, tri: &[Vec3; 3], tmin: f32, tmax: f32) -> Option<TriHit> {
-        self.meet_for_certain(tri).filter(|hit| tmin <= hit.t && hit.t <= tmax)
+        self.meet_for_certain(tri, [tmin, tmax])
     }
 
     #[inline(always)]
@@ -76,32 +76,30 @@ impl TriTest for Exact {
     }
 
     /// Those that are not missed for certain are in doubt; if there are several, they go through the second step side by side.
+    /// Of what is in doubt after that, t and u are the least and the greatest t that it may have.
     #[inline(always)]
     fn meet_eight<S: Simd>(s: S, own: &Own<S::F>, slabs: &EightSlabs<S::F>, corners: &[Points<S::F>; 3]) -> Meets<S> {
-        let [a, b, c] = *corners;
-        let (a, b, c) = (seen(s, own, a), seen(s, own, b), seen(s, own, c));
-        let u = s.sub(s.mul(c[0], b[1]), s.mul(c[1], b[0]));
-        let v = s.sub(s.mul(a[0], c[1]), s.mul(a[1], c[0]));
-        let w = s.sub(s.mul(b[0], a[1]), s.mul(b[1], a[0]));
-        let (least, greatest) = (s.min(s.min(u, v), w), s.max(s.max(u, v), w));
-        let x = s.max(s.max(s.abs(a[0]), s.abs(b[0])), s.abs(c[0]));
-        let y = s.max(s.max(s.abs(a[1]), s.abs(b[1])), s.abs(c[1]));
-        let displaced = s.mul(s.splat(DISPLACED), s.sub(slabs.o_lo.x, slabs.o_hi.x));
-        let bound = s.mul(displaced, s.add(s.max(x, y), displaced));
-        let zero = s.splat(0.0);
-        let doubt = s.or(s.le(s.sub(zero, bound), least), s.le(greatest, bound));
+        let doubt = in_doubt(s, own, slabs, corners);
         if S::DOUBLES && s.bits(doubt).count_ones() >= SIDE_BY_SIDE {
             return in_64_bits(s, own, corners, doubt);
         }
-        Meets { met: s.lt(zero, zero), doubt: Some(doubt), t: zero, u: zero, v: zero }
+        let (zero, far) = (s.splat(0.0), s.splat(f32::INFINITY));
+        Meets { met: s.lt(zero, zero), doubt: Some(doubt), t: s.sub(zero, far), u: far, v: zero }
+    }
+
+    /// Who only asks who is to be tested by itself is not served by the second step, which would be taken twice.
+    #[inline(always)]
+    fn may_meet<S: Simd>(&self, s: S, corners: &[Points<S::F>; 3]) -> u32 {
+        s.bits(in_doubt(s, &splat_own(s, &self.own()), &EightSlabs::splat(s, self.slabs()), corners))
     }
 
     /// Nothing has to be asked about boxes.
     #[inline(always)]
     fn inside<S: Simd>(s: S, meets: &Meets<S>, _: &EightSlabs<S::F>, [tmin, tmax]: [S::F; 2], _: &[Points<S::F>; 3]) -> Hits<S> {
-        let t = meets.t;
+        let Meets { t, u, v, .. } = *meets;
         let inside = s.and(s.and(s.le(tmin, t), s.le(t, tmax)), s.le(s.abs(t), s.splat(f32::MAX)));
-        Hits { hit: s.and(meets.met, inside), doubt: meets.doubt(s), t, u: meets.u, v: meets.v }
+        let may_be_inside = s.bits(s.and(s.le(tmin, u), s.le(t, tmax)));
+        Hits { hit: s.and(meets.met, inside), doubt: meets.doubt(s) & may_be_inside, t, u, v }
     }
 
     #[inline(always)]
@@ -125,6 +123,22 @@ impl TriTest for Exact {
         }
         Self { origin, dir, axes, slabs }
     }
+}
+
+/// The first step of eight: those that are not missed for certain.
+#[inline(always)]
+fn in_doubt<S: Simd>(s: S, own: &Own<S::F>, slabs: &EightSlabs<S::F>, corners: &[Points<S::F>; 3]) -> S::M {
+    let [a, b, c] = *corners;
+    let (a, b, c) = (seen(s, own, a), seen(s, own, b), seen(s, own, c));
+    let u = s.sub(s.mul(c[0], b[1]), s.mul(c[1], b[0]));
+    let v = s.sub(s.mul(a[0], c[1]), s.mul(a[1], c[0]));
+    let w = s.sub(s.mul(b[0], a[1]), s.mul(b[1], a[0]));
+    let (least, greatest) = (s.min(s.min(u, v), w), s.max(s.max(u, v), w));
+    let x = s.max(s.max(s.abs(a[0]), s.abs(b[0])), s.abs(c[0]));
+    let y = s.max(s.max(s.abs(a[1]), s.abs(b[1])), s.abs(c[1]));
+    let displaced = s.mul(s.splat(DISPLACED), s.sub(slabs.o_lo.x, slabs.o_hi.x));
+    let bound = s.mul(displaced, s.add(s.max(x, y), displaced));
+    s.or(s.le(s.sub(s.splat(0.0), bound), least), s.le(greatest, bound))
 }
 
 /// From so many on it pays to take the second step with all eight.
@@ -175,11 +189,14 @@ fn in_64_bits<S: Simd>(s: S, own: &Own<S::F>, corners: &[Points<S::F>; 3], doubt
     // Where signs are certain and differ, it is missed.
     let missed = s.and(certain, unlike(s, one_sign));
     let settled = s.or(sure, missed);
+    // Where not even the divisor is known, t may be anything.
+    let far = s.splat(f32::INFINITY);
+    let (low, high) = (s.select(known, low, s.sub(s.splat(0.0), far)), s.select(known, high, far));
     Meets {
         met: s.and(doubt, s.and(sure, one_sign)),
         doubt: Some(s.and(doubt, unlike(s, settled))),
         t: low,
-        u: weight(s, v, inverse),
+        u: s.select(settled, weight(s, v, inverse), high),
         v: weight(s, w, inverse),
     }
 }
@@ -240,10 +257,10 @@ impl Exact {
     /// The second and the third step, with the axes in the order of the first: so their operations are the same for one
     /// triangle and for eight.
     #[inline(always)]
-    fn meet_for_certain(&self, tri: &[Vec3; 3]) -> Option<TriHit> {
+    fn meet_for_certain(&self, tri: &[Vec3; 3], interval: [f32; 2]) -> Option<TriHit> {
         let (axes, [a, b, c]) = (self.axes(), *tri);
         let tri = [with_axes(a, axes), with_axes(b, axes), with_axes(c, axes)];
-        meet(with_axes(self.origin, axes), with_axes(self.dir, axes), &tri)
+        meet(with_axes(self.origin, axes), with_axes(self.dir, axes), &tri, interval)
     }
 
     /// The first step.
@@ -279,7 +296,7 @@ fn greatest(p: DVec3) -> f64 {
 
 /// The second and the third step.
 #[inline(never)]
-fn meet(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> Option<TriHit> {
+fn meet(origin: Vec3, dir: Vec3, tri: &[Vec3; 3], [tmin, tmax]: [f32; 2]) -> Option<TriHit> {
     let (o, d) = (origin.as_dvec3(), dir.as_dvec3());
     let (a, b, c) = (tri[0].as_dvec3(), tri[1].as_dvec3(), tri[2].as_dvec3());
     // Before the origin is taken off: afterwards the edges would be rounded as the corners are.
@@ -306,23 +323,28 @@ fn meet(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> Option<TriHit> {
     let (above, below) = (a.dot(normal), d.dot(normal));
     let (of_above, of_below) = (BOUND * of_a * of_ca * of_ab, bound * of_ca * of_ab);
     let inverse = 1.0 / below;
-    let t = rounded([above * inverse, of_above], [below, of_below]).unwrap_or_else(|| exact_t(origin, dir, tri));
+    let [low, high] = limits([above * inverse, of_above], [below, of_below], inverse);
+    // Most of what is in doubt lies before the ray's begin, where it leaves a surface, or behind what was hit already.
+    if high < tmin || tmax < low {
+        return None;
+    }
+    let t = if low == high { low } else { exact_t(origin, dir, tri) };
     // Of a sliver seen edge on 64 bits may not even know the sign.
     let weight = |x: f64| narrow((x * inverse).clamp(0.0, 1.0));
     let (u, v) = if below.abs() > of_below { (weight(v), weight(w)) } else { (1.0 / 3.0, 1.0 / 3.0) };
-    t.is_finite().then_some(TriHit { t, u, v })
+    (t.is_finite() && tmin <= t && t <= tmax).then_some(TriHit { t, u, v })
 }
 
-/// A quotient, rounded twice, of a number with an error and a divisor with an error: correctly rounded, if that is certain.
+/// What a quotient of a number with an error and a divisor with an error may be rounded to, at least and at most: `t` is
+/// rounded twice.
 #[inline(always)]
-fn rounded([t, of_above]: [f64; 2], [below, of_below]: [f64; 2]) -> Option<f32> {
+fn limits([t, of_above]: [f64; 2], [below, of_below]: [f64; 2], inverse: f64) -> [f32; 2] {
     if below.abs() <= 2.0 * of_below {
-        return None;
+        return [f32::NEG_INFINITY, f32::INFINITY];
     }
     // Twice the first order covers the higher ones, as the divisor is at least half of what it seems.
-    let error = 2.0 * (of_above + t.abs() * of_below) * (1.0 / below).abs() + 2.0 * f64::EPSILON * t.abs();
-    let (low, high) = (narrow(t - error), narrow(t + error));
-    (low == high).then_some(low)
+    let error = 2.0 * (of_above + t.abs() * of_below) * inverse.abs() + 2.0 * f64::EPSILON * t.abs();
+    [narrow(t - error), narrow(t + error)]
 }
 
 /// `d.((p - o) x (q - o))`.
@@ -371,3 +393,78 @@ fn exact_t(origin: Vec3, dir: Vec3, tri: &[Vec3; 3]) -> f32 {
 
 /// What stands for infinity where 32-bit numbers are rounded: one step beyond the greatest.
 const TOO_LARGE: f64 = (1u128 << 127) as f64 * 2.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin::Random;
+    use crate::simd::{Kernel, LANES, Lanes, Road};
+
+    /// One triangle in all lanes, at eight distances before the ray.
+    struct Look {
+        ray: Exact,
+        triangles: [[Vec3; 3]; LANES],
+        interval: [f32; 2],
+    }
+
+    impl Kernel for Look {
+        type Out = (u32, u32, [Lanes; 3]);
+
+        #[inline(always)]
+        fn run<S: Simd>(self, s: S) -> Self::Out {
+            let axes = self.ray.axes();
+            let corner = |k: usize| {
+                let of = |axis: usize| s.load(&std::array::from_fn(|lane| self.triangles[lane][k][axis]));
+                Points { x: of(axes[0]), y: of(axes[1]), z: of(axes[2]) }
+            };
+            let own = splat_own(s, &self.ray.own());
+            let slabs = EightSlabs::splat(s, &self.ray.slabs.in_order(axes));
+            let interval = self.interval.map(|t| s.splat(t));
+            let hits = Exact::hit_eight(s, &own, &slabs, interval, &[corner(0), corner(1), corner(2)]);
+            let store = |x: S::F| {
+                let mut lanes = [0.0; LANES];
+                s.store(x, &mut lanes);
+                lanes
+            };
+            (s.bits(hits.hit), hits.doubt, [store(hits.t), store(hits.u), store(hits.v)])
+        }
+    }
+
+    /// What eight are told for certain is to the bit what one is told; what is neither hit nor in doubt is missed.
+    #[test]
+    fn eight_side_by_side_are_as_one_by_one() {
+        let mut random = Random::new(11, 0);
+        let bounds = Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE };
+        let (mut settled, mut left) = (0, 0);
+        for round in 0..4000 {
+            let origin = random.in_ball() * if round % 3 == 0 { 3.0 } else { 0.5 };
+            let at = random.in_ball() * 0.5;
+            let ray = Exact::prepare(&Ray::new(origin, at - origin), &bounds);
+            // Around the point aimed at, from large to tiny; now and then a corner is hit to the bit.
+            let size = [1.0, 1e-2, 1e-4][round % 3];
+            let triangles = std::array::from_fn(|lane| {
+                let away = (at - origin) * (lane as f32 * 0.1 - 0.3);
+                let corners = [0; 3].map(|_| at + away + random.in_ball() * size);
+                if round % 7 == 0 { [at + away, corners[1], corners[2]] } else { corners }
+            });
+            let interval = [0.0, if round % 2 == 0 { f32::INFINITY } else { 1.0 }];
+            for road in Road::all() {
+                let (hit, doubt, [t, u, v]) = road.run(Look { ray, triangles, interval });
+                for lane in 0..LANES {
+                    let alone = ray.hit(&triangles[lane], interval[0], interval[1]);
+                    if hit >> lane & 1 == 1 {
+                        let bits = |hit: TriHit| [hit.t, hit.u, hit.v].map(f32::to_bits);
+                        assert_eq!(alone.map(bits), Some(bits(TriHit { t: t[lane], u: u[lane], v: v[lane] })));
+                        settled += 1;
+                    } else if doubt >> lane & 1 == 0 {
+                        assert_eq!(alone, None, "{} {:?}", road.id(), triangles[lane]);
+                    } else {
+                        left += 1;
+                    }
+                }
+            }
+        }
+        let wide = Road::all().len() > 1;
+        assert!((settled > 1000 || !wide) && left > 100, "{settled} settled side by side, {left} left in doubt");
+    }
+}

@@ -36,7 +36,7 @@ pub struct Shots<'a> {
 }
 
 /// Triangles and rays, multiplied, that are looked at at once: what a ray passes is kept for as long.
-const AT_ONCE: usize = 1 << 24;
+const AT_ONCE: usize = 1 << 20;
 /// The most rays at once.
 const RAYS: usize = 1 << 16;
 
@@ -53,7 +53,7 @@ impl Ground {
 
     /// How many rays are looked at at once.
     pub fn rays_at_once(&self) -> usize {
-        (AT_ONCE / self.geometry.live_count().max(1)).clamp(64, RAYS)
+        (AT_ONCE / self.geometry.live_count().max(1)).clamp(16, RAYS)
     }
 
     /// Works out what rays pass, exactly; the first has that number.

@@ -47,7 +47,7 @@ pub struct CaseRow {
     pub boxes: Vec<BoxRow>,
 }
 
-/// Runs a case. `done` is called as many times as there are [`Options::pairs`].
+/// Runs a case. `done` is called once for each of [`Options::pairs`].
 ///
 /// # Errors
 /// Cancelled, or the case's scene would not fit.
@@ -74,6 +74,9 @@ pub fn check_case(case: &Case, options: &Options, cx: &BuildCx, done: &dyn Fn())
         if chunk == 0 {
             boxes = box_rows(&shots, cx)?;
         }
+    }
+    if trial.rays.is_empty() {
+        tried.iter().for_each(|_| done());
     }
     let structures = tried.into_iter().map(Tried::finish).collect();
     Ok(CaseRow { id: case.id, triangles: ground.geometry.live_count(), structures, boxes })

@@ -184,3 +184,31 @@ pub fn candidate(test: TestKind, ray: &Ray, slabs: &Slabs, tri: &[Vec3; 3], pass
     let clear = !near && passing.t.is_some() && from <= low && high <= to;
     Some(Candidate { prim: passing.prim, clear, low, high, t })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::cases;
+    use super::*;
+    use crate::scene::LoadCx;
+
+    /// What 64 bits decide is what big integers say, on every case.
+    #[test]
+    fn the_filter_says_what_is_exact() {
+        let mut passed = 0;
+        for case in cases::ALL {
+            let trial = case.trial(5, 40);
+            let geometry = Geometry::new(&trial.scene(case.id), &LoadCx::unattended()).expect("small");
+            for ray in trial.rays.iter().filter(|ray| ray.is_valid()).take(40) {
+                let ray = geometry.space().enter(ray).ray;
+                for passing in passings(&geometry, &ray).into_iter().take(20) {
+                    let exact = exactly(&ray, passing.prim, &geometry.corners(passing.prim));
+                    assert_eq!(passing.signs, exact.signs, "{}: {ray:?}", case.id);
+                    let rounded = |p: &Passing| p.t.map(|(_, rounded)| rounded.to_bits());
+                    assert_eq!(rounded(&passing), rounded(&exact), "{}: {ray:?}", case.id);
+                    passed += 1;
+                }
+            }
+        }
+        assert!(passed > 5000, "{passed}");
+    }
+}

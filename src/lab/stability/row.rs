@@ -14,7 +14,7 @@ use crate::accel::{Accel, BuildCx, BuildError, Hit, Mode};
 use crate::geometry::tri::TestKind;
 use crate::lab::building::build_timed;
 use crate::lab::statistics::median;
-use crate::scene::Geometry;
+use crate::scene::{Geometry, Reason};
 use crate::task::{Cancel, Cancelled};
 
 /// What came out of one structure with one test.
@@ -95,7 +95,7 @@ impl Tried {
     /// Builds it, to be shot at with about so many rays. Where `may_refuse`, it may say that it would need too many indices.
     ///
     /// # Errors
-    /// Cancelled.
+    /// Cancelled, or over the memory budget.
     pub fn build(
         entry: &'static Entry,
         test: TestKind,
@@ -103,7 +103,7 @@ impl Tried {
         rays: usize,
         may_refuse: bool,
         cx: &BuildCx,
-    ) -> Result<Self, Cancelled> {
+    ) -> Result<Self, Reason> {
         let mut row = Row {
             id: entry.id,
             test,
@@ -128,7 +128,9 @@ impl Tried {
                 row.build_secs = built.build_secs;
                 Some(built.accel)
             }
-            Err(BuildError::Cancelled(cancelled)) => return Err(cancelled),
+            Err(BuildError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            // Nothing is wrong with a structure that its neighbours leave no memory.
+            Err(BuildError::Memory { over, .. }) => return Err(over.into()),
             Err(error) => {
                 let refused = may_refuse && matches!(error, BuildError::TooMany { .. });
                 (row.error, row.verdict) = (Some(error.to_string()), if refused { Verdict::Pass } else { Verdict::Fail });

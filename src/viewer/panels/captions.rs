@@ -7,8 +7,8 @@ use eframe::egui::{Align2, Color32, Pos2, Rect, TextStyle, Ui, pos2, vec2};
 use crate::accel::cell::Layout;
 use crate::render::Range;
 use crate::render::colormap::viridis;
-use crate::viewer::checks::{Mark, MarkKind};
 use crate::viewer::format;
+use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -39,7 +39,8 @@ fn captions(state: &State) -> Vec<Caption> {
     let progress = state.picture.as_ref().map(|p| p.progress).filter(|p| p.step > 1);
     let coarse = progress.map(|p| format!("1/{} resolution after {}", p.step, format::duration(p.secs)));
     let change = state.change.as_ref().filter(|(_, until)| *until > Instant::now()).map(|(text, _)| text.clone());
-    let marked = (!state.checks.marks.is_empty()).then(|| marked(&state.checks.marks));
+    let check = state.settings.workspace == Workspace::Check && !state.checks.caption.is_empty();
+    let marked = check.then(|| state.checks.caption.clone());
     let at = |at| move |text| Caption::new(at, text);
     let above = |text| Caption { row: 1, ..Caption::new(Align2::LEFT_BOTTOM, text) };
     let lines = [
@@ -50,18 +51,6 @@ fn captions(state: &State) -> Vec<Caption> {
         marked.map(at(Align2::LEFT_TOP)),
     ];
     lines.into_iter().flatten().collect()
-}
-
-/// What the rays that are drawn over the view stand for.
-fn marked(marks: &[Mark]) -> String {
-    let of = |kind| marks.iter().filter(|mark| mark.kind == kind).count() as u64;
-    let rays = |n: u64, what: &str| format!("{} {what}{}", format::count(n), if n == 1 { "ray" } else { "rays" });
-    match (of(MarkKind::Wrong), of(MarkKind::Rounded)) {
-        (0, 0) => format!("{} of the case, all answered rightly", rays(of(MarkKind::Plain), "")),
-        (wrong, 0) => rays(wrong, "wrong "),
-        (0, rounded) => rays(rounded, "rounded "),
-        (wrong, rounded) => format!("{}, {}", rays(wrong, "wrong "), rays(rounded, "rounded ")),
-    }
 }
 
 /// `Showing 14 of 14 boxes`.

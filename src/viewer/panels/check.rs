@@ -56,12 +56,6 @@ fn cell(ui: &mut Ui, case: &Case, row: &Row) {
     let help = "Nanoseconds a ray on one thread, measured beside whatever else ran.";
     fact(ui, "Time", format!("{} ns a ray", format::number(row.ns_per_ray)), help);
     fact(ui, "Build", format::duration(row.build_secs), "Wall-clock time of the build.");
-    let marked = if row.wrong.is_empty() {
-        "Some of its rays are drawn over the view."
-    } else {
-        "Its wrong rays are drawn over the view."
-    };
-    empty(ui, marked);
 }
 
 fn paragraph(ui: &mut Ui, text: &str) {
@@ -88,7 +82,7 @@ fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
 }
 
 fn mesh(ui: &mut Ui, mesh: &MeshCheck) {
-    fact(ui, "Surface", if mesh.is_closed() { "closed" } else { "open" }, "Closed if each edge is in two triangles.");
+    fact(ui, "Surface", mesh.surface(), "Closed if each edge is in two triangles, and no triangle is there twice.");
     let help = "Triangles at least a thousand times as long as high.";
     fact(ui, "Slivers", format::count(mesh.slivers), help);
     fact(ui, "Worst aspect", format::number(mesh.worst_aspect), "The greatest length of a triangle over its height.");
@@ -126,7 +120,7 @@ fn structures(ui: &mut Ui, state: &State, check: &ModelCheck, commands: &mut Com
         let [wrong, rounded, rays] = [row.wrong, row.rounded, row.rays].map(|n| format::count(n as u64));
         let figures = format!("{}: {wrong} wrong, {rounded} rounded", row.id);
         let help =
-            "rays traced. Wrong ones, and those answered otherwise than exactly as rounding may have it: click to see them.";
+            "rays traced. Wrong ones, and those that meet another triangle, or none, as rounding may have it: click to see them.";
         if ui.selectable_label(chosen, figures).on_hover_text(format!("{rays} {help}")).clicked() {
             commands.push(Command::MarkModel((!chosen).then_some(i)));
         }

@@ -109,10 +109,11 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.asking.is_some(), Command::AskForPath(false)),
         (state.measuring.is_some(), Command::CancelMeasure),
         (state.building.is_some(), Command::CancelBuild),
-        (state.checks.checking.is_some(), Command::CancelCheck),
-        (state.checks.running.is_some(), Command::CancelLab),
         (state.loading.is_some(), Command::CancelLoad),
         (state.error.is_some(), Command::Dismiss),
+        (state.checks.checking.is_some(), Command::CancelCheck),
+        // In another workspace nobody sees that it runs.
+        (state.checks.running.is_some() && state.settings.workspace == Workspace::Check, Command::CancelLab),
     ];
     // An open menu or list is further in than all of these, and closes itself.
     if !egui::Popup::is_any_open(ctx)

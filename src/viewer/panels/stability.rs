@@ -51,7 +51,8 @@ fn said(state: &State) -> String {
 fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let Some((job, _)) = &state.checks.running else {
         let help = "Run every case in the background. Nanoseconds are measured beside whatever else runs.";
-        if ui.button("Run the lab").on_hover_text(help).clicked() {
+        let run = ui.add_enabled(!state.is_measuring(), egui::Button::new("Run the lab"));
+        if run.on_hover_text(help).clicked() {
             commands.push(Command::RunLab);
         }
         return;

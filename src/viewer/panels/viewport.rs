@@ -7,11 +7,12 @@ use glam::Vec2;
 
 use super::{Commands, captions};
 use crate::scene::Camera;
+use crate::viewer::checks::Mark;
 use crate::viewer::command::Command;
 use crate::viewer::gpu::{self, Base, DrawList, Raster, View};
 use crate::viewer::navigation;
 use crate::viewer::rays_over;
-use crate::viewer::settings::Navigation;
+use crate::viewer::settings::{Navigation, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -75,7 +76,8 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
         hidden_lines: state.settings.overlay.hidden_lines,
     };
     gpu::paint(ui.painter(), rect, PANE, list);
-    rays_over::paint(&ui.painter_at(rect), rect, &state.checks.marks, &view, model.geometry.space(), palette);
+    let marks: &[Mark] = if state.settings.workspace == Workspace::Check { &state.checks.marks } else { &[] };
+    rays_over::paint(&ui.painter_at(rect), rect, marks, &view, model.geometry.space(), palette);
     let (there, all) = model.raster.progress();
     if state.picture.is_none() && there < all {
         ui.ctx().request_repaint();

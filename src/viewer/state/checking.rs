@@ -14,6 +14,9 @@ use crate::viewer::workers;
 impl State {
     /// Starts the lab anew.
     pub(super) fn run_lab(&mut self) {
+        if self.is_measuring() {
+            return;
+        }
         let (sender, receiver) = channel();
         match workers::stability(&self.shared, sender) {
             Ok(job) => {
@@ -42,8 +45,13 @@ impl State {
 
     /// Opens the case of a cell, with its structure and test, and its rays drawn over it.
     pub(super) fn open_case(&mut self, cell: Cell) {
+        if self.is_measuring() {
+            return;
+        }
         self.checks.selected = Some(cell);
         (self.settings.structure, self.settings.test) = (cell.structure.to_owned(), cell.test);
+        let entry = self.settings.entry();
+        self.settings.remember(entry, &entry.defaults());
         let name = model::case_name(cell.case);
         match self.model.as_ref().filter(|model| model.scene.name == name) {
             Some(model) => {
@@ -57,11 +65,13 @@ impl State {
 
     /// Starts the check of the open model, on the rays of the present view.
     pub(super) fn check_model(&mut self) {
+        if self.is_measuring() {
+            return;
+        }
         let Some(plan) = self.plan() else { return };
         match workers::check_model(&self.shared, plan) {
             Ok(job) => {
-                (self.checks.model, self.checks.marked) = (None, None);
-                self.checks.marks.clear();
+                self.checks.opened();
                 self.checks.checking = Some(job);
             }
             Err(e) => self.fail(format!("Can't check the model: {e}.")),

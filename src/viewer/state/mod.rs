@@ -26,6 +26,7 @@ use super::settings::Settings;
 use super::timings::Timings;
 use super::workers::{self, Building, Collecting, Counting, Curving, Loading, Measuring, Picking, Plan, Shared};
 use crate::accel::{CellId, cell};
+use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::render::{self, Mode, Picture, Range, Renderer};
 use crate::scene::{Camera, CameraSpec};
@@ -208,6 +209,11 @@ impl State {
         self.measuring.is_some()
     }
 
+    /// Whether the lab runs or the model is checked, which would disturb a measurement.
+    pub fn is_checking(&self) -> bool {
+        self.checks.running.is_some() || self.checks.checking.is_some()
+    }
+
     /// Width over height of the viewport.
     pub fn aspect(&self) -> f32 {
         self.size_px[0].max(1) as f32 / self.size_px[1].max(1) as f32
@@ -341,6 +347,7 @@ impl State {
     fn open(&mut self, model: String) {
         self.asking = None;
         self.error = None;
+        self.checks.checking = None;
         self.generation += 1;
         match workers::load(&self.shared, model.clone(), self.generation) {
             Ok(job) => self.loading = Some((model, job)),
@@ -409,11 +416,9 @@ impl State {
     /// Every structure over the open model, those that are kept and those to be built, and the present view.
     fn plan(&mut self) -> Option<Plan> {
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return None };
-        let wanted = crate::accel::registry::ALL.iter().map(|entry| Key {
-            entry,
-            params: self.settings.params_of(entry),
-            test: self.settings.test_of(entry),
-        });
+        // All have the same test: not one that stands in brute force alone.
+        let test = TestKind::ALL.into_iter().find(|test| *test == self.settings.test).unwrap_or_default();
+        let wanted = crate::accel::registry::ALL.iter().map(|entry| Key { entry, params: self.settings.params_of(entry), test });
         let (mut kept, mut missing) = (Vec::new(), Vec::new());
         for key in wanted {
             match self.kept.take_up(&key) {
@@ -432,6 +437,9 @@ impl State {
     }
 
     fn measure(&mut self) {
+        if self.is_checking() {
+            return;
+        }
         let Some(plan) = self.plan() else { return };
         match workers::measure_all(&self.shared, plan, self.renderer.pause()) {
             Ok(job) => self.measuring = Some(job),

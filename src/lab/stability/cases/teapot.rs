@@ -37,6 +37,9 @@ fn teapot() -> Vec<[Vec3; 3]> {
 fn make(random: &mut Random, rays: usize, size: f32) -> Trial {
     let mut triangles: Vec<_> = teapot().into_iter().map(|tri| tri.map(|p| p * size)).collect();
     let teapot = triangles.clone();
+    if teapot.is_empty() {
+        return Trial::default();
+    }
     triangles.extend(shapes::cube(4));
     let ray = |i: usize| {
         let origin = if i.is_multiple_of(2) { random.direction() * 3.0 * size } else { random.in_ball() * 0.9 };
