@@ -20,7 +20,9 @@ use crate::viewer::theme::{self, Marker, Palette};
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.horizontal(|ui| {
         heading(ui, "Stability");
-        ui.label(RichText::new(said(state)).small().color(Palette::in_ui(ui).dim));
+        if !state.checks.cases.is_empty() {
+            ui.label(RichText::new(said(state)).small().color(Palette::in_ui(ui).dim));
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| button(ui, state, commands));
     });
     if state.checks.cases.is_empty() && state.checks.running.is_none() {
@@ -37,15 +39,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
 fn said(state: &State) -> String {
     let rows = || state.checks.cases.iter().flat_map(|case| &case.structures);
     let of = |verdict| rows().filter(|row| row.verdict == verdict).count() as u64;
-    match rows().count() {
-        0 => String::new(),
-        _ => format!(
-            "{} pass, {} warn, {} fail",
-            format::count(of(Verdict::Pass)),
-            format::count(of(Verdict::Warn)),
-            format::count(of(Verdict::Fail))
-        ),
-    }
+    format!(
+        "{} pass, {} warn, {} fail",
+        format::count(of(Verdict::Pass)),
+        format::count(of(Verdict::Warn)),
+        format::count(of(Verdict::Fail))
+    )
 }
 
 fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
