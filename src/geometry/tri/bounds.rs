@@ -31,7 +31,7 @@ pub fn bounds(test: TestKind, ray: &Ray, tri: &[Vec3; 3]) -> Bounds {
         TestKind::Fast => fast(d, corners),
         TestKind::Watertight => watertight(d, corners),
         TestKind::Double => double(d, corners),
-        TestKind::BaldwinWeber => baldwin_weber(ray, tri, d, corners),
+        TestKind::BaldwinWeber => baldwin_weber(ray, tri),
     }
 }
 
@@ -122,10 +122,12 @@ fn double(d: DVec3, [a, b, c]: [DVec3; 3]) -> Bounds {
 
 /// Baldwin and Weber: the error is carried along with the operations of the test. It may be as large as one likes for
 /// slivers, of which the stored transformation is hardly known.
-fn baldwin_weber(ray: &Ray, tri: &[Vec3; 3], d: DVec3, [a, b, c]: [DVec3; 3]) -> Bounds {
+fn baldwin_weber(ray: &Ray, tri: &[Vec3; 3]) -> Bounds {
     let axis = Transformation::<f32>::new(tri).axis as usize;
     let [t, u, v] = Transformation::<Rounded>::along(tri, |_| axis).meet(ray.origin, ray.dir);
-    let det = d.dot((b - a).cross(c - a)).abs();
+    // Of the points as they are: seen from a far origin, a tiny triangle has no edges in 64 bits either.
+    let [a, b, c] = tri.map(|p| p.as_dvec3());
+    let det = ray.dir.as_dvec3().dot((b - a).cross(c - a)).abs();
     let side = |error: f64| if error.is_finite() { error * det } else { f64::INFINITY };
     let third = u.error + v.error + U * (u.value + v.value).abs();
     let of_t = if t.error.is_finite() { t.error } else { f64::INFINITY };
@@ -175,5 +177,23 @@ impl Number for Rounded {
 
     fn size(self) -> f64 {
         self.value.abs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Found by the stability lab: seen from the ray's origin the triangle had no area in 64 bits, and its bounds were 0, where
+    /// baldwin-weber hits it by underflow alone.
+    #[test]
+    fn a_tiny_triangle_far_away_has_bounds() {
+        let (x, y) = (4.1788916e-22, 4.1788916e-23);
+        let tri = [Vec3::new(x, 0.0, y), Vec3::new(y, x, 0.0), Vec3::new(0.0, y, x)];
+        let origin = Vec3::new(-0.1503046751022339, -1.217186450958252, -1.4570856094360352);
+        let dir = Vec3::new(0.15030476450920105, 1.2171865701675415, 1.4570856094360352);
+        let bounds = bounds(TestKind::BaldwinWeber, &Ray::new(origin, dir), &tri);
+        assert!(Transformation::<f32>::new(&tri).hit(origin, dir).is_some(), "by underflow");
+        assert!(bounds.sides.iter().all(|side| *side > 1e-43), "{bounds:?}");
     }
 }
