@@ -21,6 +21,8 @@ use crate::task::{Budget, Pool};
 
 /// Where settings are kept in eframe's storage.
 const SETTINGS: &str = "settings";
+/// The layout of a window that the command line drives.
+const SCRIPTED: u64 = u64::MAX;
 /// What opens when nothing else was asked for.
 const FIRST_SCENE: &str = "builtin:lecture";
 
@@ -70,7 +72,8 @@ impl App {
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot =
             options.screenshot.clone().map(|path| Screenshot::new(path, options.measure, options.check, options.pace));
-        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout: 0 };
+        let layout = if options.is_scripted() { SCRIPTED } else { 0 };
+        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout };
         app.follow_settings(&cc.egui_ctx);
         Ok(app)
     }
@@ -97,7 +100,7 @@ impl App {
                     let full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
                     ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!full));
                 }
-                Command::ResetLayout => self.layout += 1,
+                Command::ResetLayout => self.layout = self.layout.wrapping_add(1),
                 command => self.state.carry_out(command),
             }
             self.follow_settings(ctx);
@@ -250,6 +253,11 @@ impl eframe::App for App {
         if !self.commands.is_empty() {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// A scripted window neither leaves its sizes to the next one nor, under names of its own, takes those of the last.
+    fn persist_egui_memory(&self) -> bool {
+        self.screenshot.is_none()
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
