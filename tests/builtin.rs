@@ -9,7 +9,7 @@ fn make(spec: &str, cx: &LoadCx) -> Scene {
 }
 
 fn scaling() -> impl Iterator<Item = &'static Builtin> {
-    builtin::all().iter().filter(|scene| matches!(scene.size, Size::Scales(_)))
+    builtin::all().iter().filter(|scene| !matches!(scene.size, Size::Fixed(_)))
 }
 
 /// Sizes that are made again and again: small enough for a test, and odd.
@@ -94,7 +94,7 @@ fn the_number_of_threads_leaves_no_trace() {
     for builtin in builtin::all() {
         let spec = match builtin.size {
             Size::Fixed(_) => builtin.id.to_owned(),
-            Size::Scales(_) => format!("{}?triangles=150000", builtin.id),
+            Size::Scales(_) | Size::Places(_) => format!("{}?triangles=150000", builtin.id),
         };
         assert!(bytes(&make(&spec, &on(1))) == bytes(&make(&spec, &on(2))), "{spec}");
     }

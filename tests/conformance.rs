@@ -56,7 +56,7 @@ fn near_tie(ray: &Ray, t: f32, geometry: &Geometry) -> f32 {
 
 /// Whether the ray lies in the plane of the triangle it hits, within the rounding of 32 bits.
 fn grazes(ray: &Ray, hit: &Hit, geometry: &Geometry) -> bool {
-    let [a, b, c] = geometry.corners(geometry.flat(hit.instance, hit.primitive)).map(|p| p.as_dvec3());
+    let [a, b, c] = geometry.corners_of(hit.instance, hit.primitive).map(|p| p.as_dvec3());
     let (normal, dir) = ((b - a).cross(c - a), ray.dir.as_dvec3());
     normal.dot(dir).abs() <= 1e-5 * normal.length() * dir.length()
 }

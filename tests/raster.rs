@@ -48,7 +48,7 @@ fn check(name: &str, job: &Job) -> (Counts, u64) {
     // Where both see the same triangle they see it at the same t; at a grazing angle rounding is magnified.
     let same = hits.iter().enumerate().filter_map(|(i, hit)| {
         let (seen, hit) = (raster.seen(i)?, hit.as_ref()?);
-        (seen.prim == geometry.flat(hit.instance, hit.primitive)).then_some((seen.t, hit.t))
+        (Some(seen.prim) == geometry.flat(hit.instance, hit.primitive)).then_some((seen.t, hit.t))
     });
     let far = same.filter(|(seen, hit)| (seen - hit).abs() > 1e-4 * hit.abs()).count() as u64;
     assert!(far * 1000 <= counts.drawn, "{name}: t differs at {far} of {} pixels", counts.drawn);

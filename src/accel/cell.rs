@@ -4,20 +4,20 @@
 
 use std::ops::ControlFlow;
 
-use crate::geometry::{Aabb, Axis};
+use crate::geometry::{Aabb, Axis, num};
 use crate::scene::PrimRef;
-use glam::Vec3;
+use glam::{DAffine3, DVec3, Vec3};
 
-/// Names a cell within its structure; `instance` is 0 where there is no top level.
+/// Names a cell within its structure; `instance` is 0 where there is no lower level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct CellId {
-    /// The instance it belongs to.
+    /// 0 in the upper level, or the only one; see [`Cells::level`].
     pub instance: u32,
     /// Its number within the structure.
     pub node: u32,
 }
 
-/// What bounds a cell, in the scaled space.
+/// What bounds a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// A box with faces parallel to the axes.
@@ -88,7 +88,7 @@ pub struct Cell {
     pub id: CellId,
     /// Steps from the root, which has 0.
     pub depth: u32,
-    /// What bounds it.
+    /// What bounds it, in the scaled space of its level.
     pub shape: Shape,
     /// The plane that divides it, where one does.
     pub split: Option<Split>,
@@ -109,6 +109,15 @@ impl Cell {
             CellKind::Leaf { prims } => prims,
         }
     }
+}
+
+/// Where cells below the upper level are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The instance of the scene that they belong to; `None` for what was flattened.
+    pub instance: Option<u32>,
+    /// From the space that their shapes are in to the scene's scaled space.
+    pub scene_from_level: DAffine3,
 }
 
 /// A part of a structure's memory.
@@ -171,6 +180,12 @@ pub trait Cells: Send + Sync {
     /// Calls `each` for every reference that a leaf holds.
     fn prims(&self, cell: &Cell, each: &mut dyn FnMut(PrimRef));
 
+    /// Where the cells of that instance are; `None` for the upper level, or the only one.
+    fn level(&self, instance: u32) -> Option<Level> {
+        let _ = instance;
+        None
+    }
+
     /// How the cells relate.
     fn layout(&self) -> Layout;
 
@@ -205,6 +220,19 @@ pub fn walk_below(cells: &dyn Cells, top: Cell, visit: &mut dyn FnMut(&Cell) -> 
                 stack.extend(children.drain(..).rev());
             }
         }
+    }
+}
+
+/// The box around a cell in the scene's scaled space, whatever level it is on.
+pub fn bounds_in_scene(cells: &dyn Cells, cell: &Cell) -> Aabb {
+    let own = *cell.shape.bounds();
+    match cells.level(cell.id.instance) {
+        Some(Level { instance: Some(_), scene_from_level }) => {
+            let corners = own.corners().map(|p| scene_from_level.transform_point3(p.as_dvec3()));
+            let (min, max) = corners.into_iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+            Aabb { min: min.to_array().map(num::round_down).into(), max: max.to_array().map(num::round_up).into() }
+        }
+        _ => own,
     }
 }
 

@@ -54,6 +54,9 @@ pub enum NoEpo {
     /// Parts of triangles are worked out for boxes alone.
     #[error("end-point overlap is worked out for boxes alone")]
     NoBoxes,
+    /// Nodes below a place are shared by others.
+    #[error("end-point overlap is not worked out across two levels")]
+    TwoLevels,
 }
 
 /// With what it is worked out.

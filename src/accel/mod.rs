@@ -14,6 +14,7 @@ pub mod cell;
 pub mod epo;
 mod grid;
 mod hit;
+mod instanced;
 mod kdtree;
 mod loose;
 mod octree;
@@ -26,8 +27,9 @@ pub mod volumes;
 mod wide;
 
 pub use build::{BuildCx, BuildError};
-pub use cell::{Cell, CellId, CellKind, Cells, MemoryPart, Shape, Split};
+pub use cell::{Cell, CellId, CellKind, Cells, Level, MemoryPart, Shape, Split};
 pub use hit::{AnyHit, Asked, Closest, Hit, Mode, PrimHit, Query};
+pub use instanced::Instanced;
 pub use probe::{Prune, Step};
 
 use std::sync::Arc;
@@ -60,6 +62,12 @@ pub trait Structure: Cells + Sized + 'static {
         Ok(self.trace_one(ray, query, probe))
     }
 
+    /// The same with nobody who watches, as a function of its own: all that traces rays one by one shares it.
+    #[inline(never)]
+    fn trace_alone<Q: Query>(&self, ray: &Ray, query: &Q, mut off: Off, cancel: &Cancel) -> Result<Option<PrimHit>, Cancelled> {
+        self.trace_stoppable(ray, query, &mut off, cancel)
+    }
+
     /// Traces world rays into `hits` of the same length. The default traces them one by one.
     fn trace_batch<Q: Query>(
         &self,
@@ -68,8 +76,8 @@ pub trait Structure: Cells + Sized + 'static {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        let mut off = Off::best();
-        one_by_one(self.geometry(), rays, hits, |ray| self.trace_stoppable(ray, query, &mut off, cancel))
+        let off = Off::best();
+        one_by_one(self.geometry(), rays, hits, |ray| self.trace_alone(ray, query, off, cancel))
     }
 
     /// The same one ray at a time, without instructions that not every processor has: the terms on which
@@ -81,7 +89,7 @@ pub trait Structure: Cells + Sized + 'static {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        one_by_one(self.geometry(), rays, hits, |ray| self.trace_stoppable(ray, query, &mut Off::plain(), cancel))
+        one_by_one(self.geometry(), rays, hits, |ray| self.trace_alone(ray, query, Off::plain(), cancel))
     }
 }
 
@@ -132,7 +140,10 @@ pub trait Accel: Cells {
     /// # Errors
     /// [`Cancelled`], within milliseconds of the request; the counts are then those of a part of the
     /// ray.
-    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>, cancel: &Cancel) -> Result<Option<Hit>, Cancelled>;
+    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>, cancel: &Cancel) -> Result<Option<Hit>, Cancelled> {
+        let local = |ray: &Ray| self.trace_scaled_heard(ray, Asked::Mode(mode), watched, cancel);
+        in_scaled_space(self.geometry(), ray, &mut Traced::default(), local)
+    }
 
     /// The same with nobody who listens.
     ///
@@ -147,7 +158,40 @@ pub trait Accel: Cells {
     ///
     /// # Errors
     /// As [`Self::trace_heard`].
-    fn count_uncut(&self, ray: &Ray, counts: &mut Counts, cancel: &Cancel) -> Result<(), Cancelled>;
+    fn count_uncut(&self, ray: &Ray, counts: &mut Counts, cancel: &Cancel) -> Result<(), Cancelled> {
+        let mut watched = Watched { counts, listener: None };
+        let local = |ray: &Ray| self.trace_scaled_heard(ray, Asked::Nothing, &mut watched, cancel);
+        in_scaled_space(self.geometry(), ray, &mut Traced::default(), local).map(|_| ()) // there is no hit
+    }
+
+    /// Traces one ray that is in the scaled space already: how an upper level asks a lower one, which has no other below it.
+    ///
+    /// # Errors
+    /// As [`Self::trace`].
+    fn trace_scaled(&self, ray: &Ray, mode: Mode, off: Off, cancel: &Cancel) -> Result<Option<PrimHit>, Cancelled>;
+
+    /// The same, watched.
+    ///
+    /// # Errors
+    /// As [`Self::trace_heard`].
+    fn trace_scaled_heard(
+        &self,
+        ray: &Ray,
+        asked: Asked,
+        watched: &mut Watched<'_>,
+        cancel: &Cancel,
+    ) -> Result<Option<PrimHit>, Cancelled>;
+
+    /// What the cells of an instance are built over (see [`CellId`]): the references that they hold are its.
+    fn geometry_of(&self, instance: u32) -> &Arc<Geometry> {
+        let _ = instance;
+        self.geometry()
+    }
+
+    /// Its two levels, if it has them.
+    fn levels(&self) -> Option<&Instanced> {
+        None
+    }
 }
 
 impl<S: Structure> Accel for S {
@@ -176,15 +220,21 @@ impl<S: Structure> Accel for S {
         }
     }
 
-    fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>, cancel: &Cancel) -> Result<Option<Hit>, Cancelled> {
-        let local = |ray: &Ray| self.trace_stoppable(ray, &Asked::Mode(mode), watched, cancel);
-        in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local)
+    fn trace_scaled(&self, ray: &Ray, mode: Mode, off: Off, cancel: &Cancel) -> Result<Option<PrimHit>, Cancelled> {
+        match mode {
+            Mode::Closest => self.trace_alone(ray, &Closest, off, cancel),
+            Mode::Any => self.trace_alone(ray, &AnyHit, off, cancel),
+        }
     }
 
-    fn count_uncut(&self, ray: &Ray, counts: &mut Counts, cancel: &Cancel) -> Result<(), Cancelled> {
-        let mut watched = Watched { counts, listener: None };
-        let local = |ray: &Ray| self.trace_stoppable(ray, &Asked::Nothing, &mut watched, cancel);
-        in_scaled_space(Structure::geometry(self), ray, &mut Traced::default(), local).map(|_| ()) // there is no hit
+    fn trace_scaled_heard(
+        &self,
+        ray: &Ray,
+        asked: Asked,
+        watched: &mut Watched<'_>,
+        cancel: &Cancel,
+    ) -> Result<Option<PrimHit>, Cancelled> {
+        self.trace_stoppable(ray, &asked, watched, cancel)
     }
 }
 

@@ -18,6 +18,12 @@ pub trait Probe {
         None
     }
 
+    /// What follows is below this entry of the upper level, counted from 1, or in the upper level again for 0.
+    #[inline(always)]
+    fn level(&mut self, instance: u32) {
+        let _ = instance;
+    }
+
     /// The node or cell entered next, by its number in [`super::CellId`].
     #[inline(always)]
     fn at(&mut self, node: u32) {
@@ -74,6 +80,8 @@ pub enum Prune {
 /// One step of a traversal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
+    /// What follows is in cells of this instance (see [`super::CellId`]).
+    Level(u32),
     /// A node or cell was entered.
     Entered(u32),
     /// A node or cell was left out.
@@ -108,6 +116,10 @@ impl Watched<'_> {
 
 impl Probe for Watched<'_> {
     const LISTENS: bool = true;
+
+    fn level(&mut self, instance: u32) {
+        self.tell(Step::Level(instance));
+    }
 
     fn at(&mut self, node: u32) {
         self.tell(Step::Entered(node));
@@ -155,6 +167,11 @@ impl Off {
     /// Without instructions that not every processor has.
     pub const fn plain() -> Self {
         Self { road: None }
+    }
+
+    /// Whether it is so.
+    pub const fn is_plain(&self) -> bool {
+        self.road.is_none()
     }
 }
 

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::params::{Param, ParamValues};
-use super::{Accel, BuildCx, BuildError, brute, bsp, bvh, grid, kdtree, octree, volumes, wide};
+use super::{Accel, BuildCx, BuildError, Instanced, brute, bsp, bvh, grid, kdtree, octree, volumes, wide};
 use crate::geometry::tri::{BaldwinWeber, Double, Exact, Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 
@@ -56,11 +56,26 @@ impl Entry {
         TestKind::ALL.into_iter().chain(self.others.iter().map(|(test, _)| *test))
     }
 
-    /// Builds it for a triangle test.
+    /// Builds it for a triangle test: where meshes stand in several places one for each mesh, and a level above
+    /// ([`Instanced`]).
     ///
     /// # Errors
     /// Cancelled, it would not fit, or it does not have that test.
     pub fn build(
+        &self,
+        geometry: &Arc<Geometry>,
+        test: TestKind,
+        p: &ParamValues,
+        cx: &BuildCx,
+    ) -> Result<Box<dyn Accel>, BuildError> {
+        match geometry.placed() {
+            None => self.build_flat(geometry, test, p, cx),
+            Some(placed) => Ok(Box::new(Instanced::build(self, geometry, placed, test, p, cx)?)),
+        }
+    }
+
+    /// The same over the flattened triangles alone.
+    pub(super) fn build_flat(
         &self,
         geometry: &Arc<Geometry>,
         test: TestKind,

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use super::Accel;
 use super::cell::{Cell, CellKind, Cells, Descend, Layout, MemoryPart, Shape, walk};
 use super::params::{C_ISECT, C_TRAV, Param, ParamValues, Value};
 use crate::geometry::Aabb;
@@ -109,6 +110,30 @@ impl Stats {
     /// In how many leaves a triangle is, in the mean, of `live` that the structure holds.
     pub fn duplication(&self, live: usize) -> Option<f64> {
         (live > 0).then(|| self.references as f64 / live as f64)
+    }
+
+    /// Of any structure: of both levels together, where there are two.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if asked to stop.
+    pub fn of_structure(accel: &dyn Accel, weights: SahWeights, cancel: &Cancel) -> Result<Self, Cancelled> {
+        match accel.levels() {
+            Some(levels) => levels.stats(weights, cancel),
+            None => Self::of(accel, weights, cancel),
+        }
+    }
+
+    /// Adds what is counted of another structure beside this one.
+    pub(super) fn add_stored(&mut self, other: &Self) {
+        self.nodes += other.nodes;
+        self.leaves += other.leaves;
+        self.empty_leaves += other.empty_leaves;
+        self.references += other.references;
+        self.max_depth = self.max_depth.max(other.max_depth);
+        for (ours, theirs) in [(&mut self.leaf_sizes, &other.leaf_sizes), (&mut self.leaf_depths, &other.leaf_depths)] {
+            ours.resize(ours.len().max(theirs.len()), 0);
+            ours.iter_mut().zip(theirs).for_each(|(ours, theirs)| *ours += theirs);
+        }
     }
 
     fn leaf(&mut self, depth: u32, prims: u32) {

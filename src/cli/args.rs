@@ -13,6 +13,14 @@ pub struct ModelArgs {
     pub machine: MachineArgs,
 }
 
+/// What becomes of meshes that stand in several places.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct InstanceArgs {
+    /// Flatten meshes that stand in several places, instead of building one structure for each and a level above.
+    #[arg(long)]
+    pub flatten: bool,
+}
+
 /// How much of the machine is used.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct MachineArgs {

@@ -4,7 +4,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::args::{LookArgs, ModelArgs, Size, seconds};
+use super::args::{InstanceArgs, LookArgs, ModelArgs, Size, seconds};
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
@@ -63,6 +63,8 @@ pub struct Args {
     look: LookArgs,
     #[command(flatten)]
     build: BuildArgs,
+    #[command(flatten)]
+    instances: InstanceArgs,
     /// Also work out end-point overlap, and count random lines that nothing cuts short, as stats does.
     #[arg(long)]
     quality: bool,
@@ -94,7 +96,9 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     }
     let params = args.build.params(entries)?;
     let cx = Context::new(args.model.machine, cancel);
-    let model = cx.load(&args.model.model)?;
+    let model = cx.load_with_instances(&args.model.model, args.instances.flatten)?;
+    // It draws flattened triangles alone.
+    let raster = raster && model.geometry.placed().is_none();
 
     let (mut structures, mut accels) = (Vec::new(), Vec::new());
     let (tests, options) = (args.tests(), args.how.options(args.quality));

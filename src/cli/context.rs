@@ -10,7 +10,7 @@ use crate::accel::registry::Entry;
 use crate::accel::{BuildCx, BuildError};
 use crate::geometry::tri::TestKind;
 use crate::lab::{BuiltRow, MachineFacts, SceneFacts, build_timed};
-use crate::scene::{self, Geometry, LoadCx, Scene};
+use crate::scene::{self, Geometry, LoadCx, Reason, Scene};
 use crate::task::{Budget, Cancel, Pool, Progress};
 
 /// How the work is done.
@@ -35,10 +35,19 @@ impl Context {
 
     /// Opens and flattens a model; its warnings go to standard error.
     pub fn load(&self, model: &str) -> Result<Model, Failure> {
+        self.open(model, Geometry::new)
+    }
+
+    /// The same, but meshes that stand in several places are kept once, unless `flatten` says otherwise.
+    pub fn load_with_instances(&self, model: &str, flatten: bool) -> Result<Model, Failure> {
+        self.open(model, if flatten { Geometry::new } else { Geometry::with_instances })
+    }
+
+    fn open(&self, model: &str, gather: fn(&Scene, &LoadCx) -> Result<Geometry, Reason>) -> Result<Model, Failure> {
         let cx = self.load_cx();
         let opened = bar::watch("open", &cx.progress, || {
             let scene = scene::open(model, &cx)?;
-            let geometry = Geometry::new(&scene, &cx).map_err(|reason| reason.of(model))?;
+            let geometry = gather(&scene, &cx).map_err(|reason| reason.of(model))?;
             Ok::<_, Failure>(Model { scene: Arc::new(scene), geometry: Arc::new(geometry) })
         })?;
         for warning in &opened.scene.warnings {

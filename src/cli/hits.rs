@@ -1,4 +1,5 @@
-//! Hits in NumPy files: an .npz of `t`, `u`, `v` (float32) and `primitive` (uint32), one a ray.
+//! Hits in NumPy files: an .npz of `t`, `u`, `v` (float32) and `primitive` (uint32; uint64 for a scene of more triangles than
+//! 32 bits number), one a ray.
 
 use std::io::{self, Seek, Write};
 
@@ -6,15 +7,12 @@ use npyz::WriterBuilder;
 use zip::write::SimpleFileOptions;
 
 use crate::accel::{Hit, Mode};
-use crate::scene::Geometry;
-
-/// What stands for the triangle of a miss.
-const NONE: u32 = u32::MAX;
+use crate::scene::{Instance, Scene};
 
 /// Writes hits. For [`Mode::Closest`]: t is infinite for a miss, and the primitive is the index in
-/// the flattened scene. For [`Mode::Any`]: t is 0 where there is a hit and infinite where there is
-/// none; which hit it was is chance, so nothing is said of it.
-pub fn write(hits: &[Option<Hit>], mode: Mode, geometry: &Geometry, out: impl Write + Seek) -> io::Result<()> {
+/// the flattened scene, whether it was flattened or not. For [`Mode::Any`]: t is 0 where there is a hit and infinite
+/// where there is none; which hit it was is chance, so nothing is said of it.
+pub fn write(hits: &[Option<Hit>], mode: Mode, scene: &Scene, out: impl Write + Seek) -> io::Result<()> {
     let closest = |hit: &Option<Hit>| hit.filter(|_| mode == Mode::Closest);
     let t = |hit: &Option<Hit>| match (hit, mode) {
         (Some(hit), Mode::Closest) => hit.t,
@@ -25,8 +23,25 @@ pub fn write(hits: &[Option<Hit>], mode: Mode, geometry: &Geometry, out: impl Wr
     array(&mut zip, "t", hits, t)?;
     array(&mut zip, "u", hits, |hit| closest(hit).map_or(0.0, |hit| hit.u))?;
     array(&mut zip, "v", hits, |hit| closest(hit).map_or(0.0, |hit| hit.v))?;
-    array(&mut zip, "primitive", hits, |hit| closest(hit).map_or(NONE, |hit| geometry.flat(hit.instance, hit.primitive)))?;
+    let first = first_triangles(scene);
+    let flat = |hit: &Option<Hit>| closest(hit).map(|hit| first[hit.instance as usize] + u64::from(hit.primitive));
+    if scene.triangle_count() < u64::from(u32::MAX) {
+        array(&mut zip, "primitive", hits, |hit| flat(hit).and_then(|i| u32::try_from(i).ok()).unwrap_or(u32::MAX))?;
+    } else {
+        array(&mut zip, "primitive", hits, |hit| flat(hit).unwrap_or(u64::MAX))?;
+    }
     zip.finish()?.flush()
+}
+
+/// The number that each instance's first triangle has where all are counted in order.
+fn first_triangles(scene: &Scene) -> Vec<u64> {
+    let mut next = 0;
+    let first = |i: &Instance| {
+        let first = next;
+        next += scene.meshes[i.mesh].triangles.len() as u64;
+        first
+    };
+    scene.instances.iter().map(first).collect()
 }
 
 /// Adds an array, uncompressed, as `numpy.savez` does.

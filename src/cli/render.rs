@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use image::ImageEncoder;
 
-use super::args::{LookArgs, ModelArgs, Size};
+use super::args::{InstanceArgs, LookArgs, ModelArgs, Size};
 use super::bar;
 use super::context::Context;
 use super::failure::Failure;
@@ -40,6 +40,8 @@ pub struct Args {
     look: LookArgs,
     #[command(flatten)]
     build: BuildArgs,
+    #[command(flatten)]
+    instances: InstanceArgs,
 }
 
 /// A film holds a sum and a depth for each pixel, and the picture's bytes are made of it.
@@ -54,7 +56,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let params = args.build.params(&[entry])?.remove(0);
     let cx = Context::new(args.model.machine, cancel);
     let _memory = cx.budget.charge(args.size.pixels() * BYTES_PER_PIXEL)?;
-    let model = cx.load(&args.model.model)?;
+    let model = cx.load_with_instances(&args.model.model, args.instances.flatten)?;
     let built = cx.build(entry, &model, args.build.test, &params)?;
 
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());

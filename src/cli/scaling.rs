@@ -119,7 +119,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 /// The model in all sizes, the smallest first, and the largest as a whole.
 fn models(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failure> {
     let model = &args.model.model;
-    let scales = |name: &str| builtin::all().iter().any(|s| s.id == name && matches!(s.size, builtin::Size::Scales(_)));
+    let scales = |name: &str| builtin::all().iter().any(|s| s.id == name && !matches!(s.size, builtin::Size::Fixed(_)));
     let (geometries, largest) = match model.strip_prefix(SCHEME) {
         Some(name) if scales(name) => made(args, cx)?,
         _ => subdivided(args, cx)?,

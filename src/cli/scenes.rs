@@ -32,7 +32,7 @@ impl Row {
             model: format!("{}{}", builtin::SCHEME, scene.id),
             about: scene.about,
             triangles: scene.size.by_default(),
-            scales: matches!(scene.size, Size::Scales(_)),
+            scales: !matches!(scene.size, Size::Fixed(_)),
         }
     }
 }

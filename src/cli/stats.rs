@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::args::ModelArgs;
+use super::args::{InstanceArgs, ModelArgs};
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
@@ -31,6 +31,8 @@ pub struct Args {
     #[command(flatten)]
     build: BuildArgs,
     #[command(flatten)]
+    instances: InstanceArgs,
+    #[command(flatten)]
     quality: QualityArgs,
     /// Print one JSON object.
     #[arg(long)]
@@ -41,7 +43,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let Many(entries) = &args.structure;
     let params = args.build.params(entries)?;
     let cx = Context::new(args.model.machine, cancel);
-    let model = cx.load(&args.model.model)?;
+    let model = cx.load_with_instances(&args.model.model, args.instances.flatten)?;
     let options = args.quality.options(true);
     let (mut structures, mut contestants) = (Vec::new(), Vec::new());
     for (entry, params) in entries.iter().zip(&params) {
@@ -87,7 +89,7 @@ pub fn row(
     match cx.build(entry, model, test, params) {
         Ok(built) => {
             let (accel, weights) = (built.accel.as_ref(), SahWeights::of(params));
-            let stats = Stats::of(accel, weights, &cx.cancel)?;
+            let stats = Stats::of_structure(accel, weights, &cx.cancel)?;
             let title = format!("quality of {}", entry.id);
             let with = (&cx.pool, &cx.budget, &cx.cancel);
             let quality = || Quality::of(accel, &stats, weights, options, with);
@@ -117,8 +119,7 @@ pub fn head(report: &Report) -> Vec<(&'static str, String)> {
     let (scene, machine) = (&report.scene, &report.machine);
     let size = scene.extent.map(number).join(" x ");
     let left_out = [(scene.dropped, "dropped"), (scene.degenerate, "degenerate")];
-    let left_out: String =
-        left_out.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!(", {} {what}", count((*n).into()))).collect();
+    let left_out: String = left_out.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!(", {} {what}", count(*n))).collect();
     vec![
         ("model", format!("{}: {} triangles{left_out}, extent {size}", scene.path, count(scene.triangles))),
         ("machine", format!("{}, {} cores, {} threads", machine.cpu, machine.cores, machine.threads)),

@@ -5,7 +5,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::args::ModelArgs;
+use super::args::{InstanceArgs, ModelArgs};
 use super::context::Context;
 use super::failure::Failure;
 use super::output::{OutFile, print, print_json};
@@ -37,6 +37,8 @@ pub struct Args {
     any_hit: bool,
     #[command(flatten)]
     build: BuildArgs,
+    #[command(flatten)]
+    instances: InstanceArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -67,7 +69,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let cx = Context::new(args.model.machine, cancel);
     let (rays, _rays_memory) = npy::read_rays(&args.rays, &cx.budget, &cx.cancel)?;
     let _hits_memory = cx.budget.charge((rays.len() * size_of::<Option<Hit>>()) as u64)?;
-    let model = cx.load(&args.model.model)?;
+    let model = cx.load_with_instances(&args.model.model, args.instances.flatten)?;
     let built = cx.build(entry, &model, args.build.test, &params)?;
 
     let mode = if args.any_hit { Mode::Any } else { Mode::Closest };
@@ -77,7 +79,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let Traced { invalid, in_beams } =
         bar::watch("trace", &progress, || trace(built.accel.as_ref(), &rays, mode, &mut found, &cx, &progress))?;
     let secs = start.elapsed().as_secs_f64();
-    out.write(&cx.cancel, |file| hits::write(&found, mode, &model.geometry, file))?;
+    out.write(&cx.cancel, |file| hits::write(&found, mode, &model.scene, file))?;
     let outcome = Outcome {
         scene: model.facts(),
         machine: cx.machine(),

@@ -14,7 +14,7 @@ use super::eight::{Points, Rays};
 use super::num::narrow;
 use super::{Aabb, Ray};
 use crate::simd::Simd;
-use glam::{DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 /// Beyond this many extents from the scene's box an origin is moved closer.
 pub const FAR: f64 = 8.0;
@@ -177,6 +177,32 @@ impl Space {
         let back = Back { offset, scale };
         let (tmin, tmax) = (back.scaled_t(ray.tmin).max(0.0), back.scaled_t(ray.tmax));
         Entered { ray: Ray { origin: moved.as_vec3(), dir: dir.as_vec3(), tmin, tmax }, back }
+    }
+
+    /// A ray of another space in this one, to which `map` leads from there; that space's t comes [`Back`].
+    ///
+    /// What 32 bits hold of the ray is rounded once, and origins beyond [`FAR`] extents are moved along the ray to within a
+    /// few extents. The interval ends later by as much as keeps every t in it that is rounded to no more than the end there.
+    #[inline]
+    pub fn enter_mapped(&self, ray: &Ray, map: &DAffine3) -> Entered {
+        let (origin, dir) = (map.transform_point3(ray.origin.as_dvec3()), map.transform_vector3(ray.dir.as_dvec3()));
+        let up = power_of_two_at_most(1.0 / dir.abs().max_element());
+        let dir = dir * up;
+        let offset = if self.is_near(origin.as_vec3()) { 0.0 } else { self.near_enough(origin, dir) };
+        let back = Back { offset, scale: up };
+        let tmin = back.scaled_t(ray.tmin).max(0.0);
+        let tmax = back.scaled_t(ray.tmax.next_up()).next_up();
+        Entered { ray: Ray { origin: (origin + dir * offset).as_vec3(), dir: dir.as_vec3(), tmin, tmax }, back }
+    }
+
+    /// How far to move a far origin along a direction whose greatest component is in (1/2, 1]: to before a sphere around
+    /// the box, and no more than a few extents.
+    #[inline]
+    fn near_enough(&self, origin: DVec3, dir: DVec3) -> f64 {
+        let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
+        let along = (0.5 * (min + max) - origin).dot(dir) / dir.length_squared();
+        // The box reaches less than 0.87 extents from its middle, which the ray passes in 1.74 of t at most.
+        (along - 2.0 * extent(&self.bounds)).max(0.0)
     }
 
     /// Whether an origin is within [`FAR`] extents of the box.

@@ -39,7 +39,7 @@ pub fn differing(raster: &Raster, accel: &dyn Accel, rays: &[Ray], pool: &Pool, 
         accel.trace(rays, Mode::Closest, &mut hits, cancel)?;
         for (i, (ray, hit)) in rays.iter().zip(hits).enumerate() {
             let seen = raster.seen(chunk * CHUNK + i).map(|seen| seen.prim);
-            let hit = hit.map(|hit| geometry.flat(hit.instance, hit.primitive));
+            let hit = hit.and_then(|hit| geometry.flat(hit.instance, hit.primitive));
             if seen != hit {
                 let prims = [seen, hit].into_iter().flatten();
                 let count = if explained(geometry, ray, prims) { &mut found.edge } else { &mut found.other };

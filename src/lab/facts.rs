@@ -13,9 +13,9 @@ pub struct SceneFacts {
     /// Triangles of all instances, dropped and degenerate ones counted.
     pub triangles: u64,
     /// Those with a vertex that is not finite.
-    pub dropped: u32,
+    pub dropped: u64,
     /// Those of zero area, which structures do not hold.
-    pub degenerate: u32,
+    pub degenerate: u64,
     /// The size of the bounding box of the rest, in world units.
     pub extent: [f64; 3],
 }
@@ -25,11 +25,12 @@ impl SceneFacts {
     pub fn of(scene: &Scene, geometry: &Geometry) -> Self {
         let bounds = geometry.world_bounds();
         let size = if bounds.is_empty() { glam::DVec3::ZERO } else { bounds.max.as_dvec3() - bounds.min.as_dvec3() };
+        let counts = geometry.counts();
         Self {
             path: scene.name.clone(),
-            triangles: geometry.triangle_count() as u64,
-            dropped: geometry.dropped(),
-            degenerate: geometry.degenerate(),
+            triangles: counts.triangles,
+            dropped: counts.dropped,
+            degenerate: counts.degenerate,
             extent: size.to_array(),
         }
     }

@@ -73,14 +73,18 @@ impl Quality {
             overlap: stats.overlap,
             leaf_volume: stats.leaf_volume,
             empty_volume: stats.empty_volume(),
-            duplication: stats.duplication(accel.geometry().live_count()),
+            duplication: stats.duplication(accel.geometry().stored_live()),
             alpha: options.alpha,
             lines,
             ..Self::default()
         };
         if let Some(most) = options.epo_most {
             let cx = EpoCx { most, pool: pool.clone(), budget: budget.clone(), cancel: cancel.clone() };
-            match Epo::of(accel, accel.geometry(), weights, &cx) {
+            let epo = match accel.levels() {
+                Some(_) => Err(NoEpo::TwoLevels),
+                None => Epo::of(accel, accel.geometry(), weights, &cx),
+            };
+            match epo {
                 Ok(epo) => (quality.epo, quality.blend) = (Some(epo), Some(epo.blend(stats.sah, options.alpha))),
                 Err(NoEpo::Cancelled(cancelled)) => return Err(cancelled),
                 Err(why) => quality.epo_missing = Some(why.to_string()),

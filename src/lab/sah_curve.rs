@@ -8,7 +8,7 @@ use crate::accel::cell::{Cell, Descend, Layout, walk_below};
 use crate::accel::stats::SahWeights;
 use crate::accel::{Accel, Split};
 use crate::geometry::{Aabb, Axis};
-use crate::scene::PrimRef;
+use crate::scene::{Geometry, PrimRef};
 use crate::task::{Cancel, Cancelled};
 
 /// A candidate: where it crosses the node, from 0 to 1 along its axis, and what it would cost.
@@ -53,8 +53,9 @@ pub fn of_node(accel: &dyn Accel, node: &Cell, weights: SahWeights, cancel: &Can
     if prims.len() < 2 || bounds.area() <= 0.0 {
         return Ok(None);
     }
+    let geometry = accel.geometry_of(node.id.instance);
     let clip = |b: Aabb| if partition { b.intersection(bounds) } else { b };
-    let boxes: Vec<Aabb> = prims.iter().map(|p| clip(Aabb::of_triangle(&accel.geometry().corners(*p)))).collect();
+    let boxes: Vec<Aabb> = prims.iter().map(|p| clip(Aabb::of_triangle(&geometry.corners(*p)))).collect();
     let mut axes = [const { Vec::new() }; 3];
     for (axis, curve) in Axis::ALL.into_iter().zip(&mut axes) {
         cancel.check()?;
@@ -167,7 +168,9 @@ fn chosen(accel: &dyn Accel, node: &Cell, weights: SahWeights, cancel: &Cancel) 
     let bounds = node.shape.bounds();
     let plane = match (node.split, &sides[..]) {
         (Some(Split::Axis { axis, pos }), _) => Some((axis, pos)),
-        (_, [left, right]) => Axis::ALL.into_iter().find_map(|axis| between(accel, axis, left, right)),
+        (_, [left, right]) => {
+            Axis::ALL.into_iter().find_map(|axis| between(accel.geometry_of(node.id.instance), axis, left, right))
+        }
         _ => None,
     };
     let at = |(axis, pos): (Axis, f32)| {
@@ -178,8 +181,8 @@ fn chosen(accel: &dyn Accel, node: &Cell, weights: SahWeights, cancel: &Cancel) 
 }
 
 /// The middle between the centres of both sides on an axis that divides them.
-fn between(accel: &dyn Accel, axis: Axis, left: &[PrimRef], right: &[PrimRef]) -> Option<(Axis, f32)> {
-    let centre = |p: &PrimRef| Aabb::of_triangle(&accel.geometry().corners(*p)).centre()[axis.index()];
+fn between(geometry: &Geometry, axis: Axis, left: &[PrimRef], right: &[PrimRef]) -> Option<(Axis, f32)> {
+    let centre = |p: &PrimRef| Aabb::of_triangle(&geometry.corners(*p)).centre()[axis.index()];
     let range =
         |prims: &[PrimRef]| prims.iter().map(centre).fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
     let (l, r) = (range(left), range(right));

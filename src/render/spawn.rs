@@ -25,7 +25,7 @@ pub struct Point {
 impl Point {
     /// Where `ray` hit the scene.
     pub fn of(geometry: &Geometry, ray: &Ray, hit: &Hit) -> Self {
-        let [a, b, c] = geometry.corners(geometry.flat(hit.instance, hit.primitive));
+        let [a, b, c] = geometry.corners_of(hit.instance, hit.primitive);
         let at = a + (b - a) * hit.u + (c - a) * hit.v;
         let normal = (b - a).as_dvec3().cross((c - a).as_dvec3()).try_normalize().map_or(Vec3::Y, |n| n.as_vec3());
         let normal = if normal.dot(ray.dir) > 0.0 { -normal } else { normal };

@@ -1,31 +1,60 @@
-//! The triangles that structures are built over: every instance of the scene, flattened into the
-//! scaled space, kept once and shared.
+//! The triangles that structures are built over, in the scaled space, kept once and shared: every instance
+//! of the scene flattened, or those of meshes that stand in one place, beside the meshes that stand in several.
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 
-use super::{LoadCx, Reason, Scene};
+use super::placed::{Placed, Sorted, Standing};
+use super::whose::{Owners, Whose};
+use super::{LoadCx, Mesh, Reason, Scene};
 use crate::geometry::{Aabb, Space, has_zero_area, num};
 use crate::sys::list_in_large_pages;
 use crate::task::Charge;
 
-/// A triangle of the flattened scene: its index in file order, dropped ones counted.
+/// A flattened triangle: its index in file order, dropped ones counted.
 pub type PrimRef = u32;
 
-/// The flattened scene.
+/// The scene as structures see it.
+///
+/// What concerns single triangles is about those that were flattened: all of them, unless [`Self::placed`] says that
+/// there are others, which stand in several places and are kept once.
 #[derive(Debug)]
 pub struct Geometry {
     space: Space,
     world_bounds: Aabb,
+    /// Of the flattened triangles, in the scaled space.
+    bounds: Aabb,
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     /// Triangles that structures hold, in order; all of them where none is left out.
     live: Live,
-    /// The first triangle of each instance, and one past the last: ascending.
-    first_prim: Vec<u32>,
-    places: Places,
+    owners: Owners,
     dropped: u32,
     degenerate: u32,
+    placed: Option<Placed>,
+    /// Triangles of instances that their transform makes a line or a point.
+    vanished: u64,
     _memory: Charge,
+}
+
+/// A mesh in one place, to be flattened.
+pub(super) struct Piece<'a> {
+    pub mesh: &'a Mesh,
+    pub world_from_object: &'a Affine3A,
+    /// Its number in the scene.
+    pub instance: u32,
+}
+
+/// How many triangles a scene has, each counted as often as it stands somewhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// All of them.
+    pub triangles: u64,
+    /// Those with a vertex that is NaN or infinite.
+    pub dropped: u64,
+    /// Those whose area is exactly zero.
+    pub degenerate: u64,
+    /// Those that structures hold.
+    pub live: u64,
 }
 
 #[derive(Debug)]
@@ -35,7 +64,7 @@ enum Live {
 }
 
 impl Geometry {
-    /// Flattens the scene.
+    /// Flattens the scene: every instance becomes triangles of its own.
     ///
     /// Triangles with a vertex that is not finite are dropped; those of zero area are kept out of
     /// the structures; both keep their index and are counted.
@@ -43,7 +72,31 @@ impl Geometry {
     /// # Errors
     /// Cancelled, over the memory budget, or more triangles or vertices than 32 bits can index.
     pub fn new(scene: &Scene, cx: &LoadCx) -> Result<Self, Reason> {
-        let sizes = |f: fn(&super::Mesh) -> usize| scene.instances.iter().map(|i| f(&scene.meshes[i.mesh]) as u64).sum::<u64>();
+        let pieces: Vec<Piece> = (0..num::index(scene.instances.len())).map(|i| Piece::of(scene, i)).collect();
+        Self::of_pieces(&pieces, Aabb::EMPTY, cx)
+    }
+
+    /// The same, but meshes that stand in several places are kept once (see [`Placed`]); where there are none it is the
+    /// same altogether.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; the limit of 32 bits holds for what is flattened, and for each mesh.
+    pub fn with_instances(scene: &Scene, cx: &LoadCx) -> Result<Self, Reason> {
+        let mut sorted = Sorted::new(scene);
+        if sorted.all_flat() {
+            return Self::new(scene, cx);
+        }
+        let (standing, around) = sorted.place(scene, cx)?;
+        let pieces: Vec<Piece> = sorted.flat.iter().map(|i| Piece::of(scene, *i)).collect();
+        let flat = Self::of_pieces(&pieces, around, cx)?;
+        let placed = Standing::settle(standing, &flat.space, cx)?;
+        let placed = (!placed.places().is_empty()).then_some(placed);
+        Ok(Self { placed, vanished: sorted.vanished, ..flat })
+    }
+
+    /// Flattens some meshes of a scene, of which the others lie in `beside` in the world.
+    pub(super) fn of_pieces(pieces: &[Piece], beside: Aabb, cx: &LoadCx) -> Result<Self, Reason> {
+        let sizes = |f: fn(&Mesh) -> usize| pieces.iter().map(|piece| f(piece.mesh) as u64).sum::<u64>();
         let (vertices, triangles) = (sizes(|m| m.positions.len()), sizes(|m| m.triangles.len()));
         for (count, what) in [(vertices, "vertices"), (triangles, "triangles")] {
             if count > num::MAX_INDEX as u64 {
@@ -54,38 +107,37 @@ impl Geometry {
         cx.progress.start("flatten", triangles);
         let mut flat = Self {
             space: Space::new(&Aabb::EMPTY),
-            world_bounds: Aabb::EMPTY,
+            world_bounds: beside,
+            bounds: Aabb::EMPTY,
             // Leaves may refer to them from anywhere.
             positions: list_in_large_pages(num::floor_index(vertices as f64, num::MAX_INDEX)),
             triangles: Vec::with_capacity(num::floor_index(triangles as f64, num::MAX_INDEX)),
             live: Live::All,
-            first_prim: vec![0],
-            places: Places::default(),
+            owners: Owners::new(pieces.iter().map(|piece| (piece.instance, piece.mesh.triangles.len()))),
             dropped: 0,
             degenerate: 0,
+            placed: None,
+            vanished: 0,
             _memory: memory,
         };
-        flat.gather(scene, cx)?;
-        flat.places = Places::new(&flat.first_prim);
+        flat.gather(pieces, cx)?;
         flat.classify_and_scale(cx)?;
         Ok(flat)
     }
 
-    /// Appends the world positions and the triangles of every instance.
-    fn gather(&mut self, scene: &Scene, cx: &LoadCx) -> Result<(), Reason> {
-        for instance in &scene.instances {
-            let mesh = &scene.meshes[instance.mesh];
+    /// Appends the world positions and the triangles of every piece.
+    fn gather(&mut self, pieces: &[Piece], cx: &LoadCx) -> Result<(), Reason> {
+        for Piece { mesh, world_from_object, .. } in pieces {
             let base = num::index(self.positions.len());
             for chunk in mesh.positions.chunks(CHUNK) {
                 cx.cancel.check()?;
-                self.positions.extend(chunk.iter().map(|p| instance.world_from_object.transform_point3(*p)));
+                self.positions.extend(chunk.iter().map(|p| world_from_object.transform_point3(*p)));
             }
             for chunk in mesh.triangles.chunks(CHUNK) {
                 cx.cancel.check()?;
                 self.triangles.extend(chunk.iter().map(|t| t.map(|i| i + base)));
                 cx.progress.advance(chunk.len() as u64);
             }
-            self.first_prim.push(num::index(self.triangles.len()));
         }
         Ok(())
     }
@@ -98,26 +150,32 @@ impl Geometry {
         let (positions, triangles) = (&self.positions, &self.triangles);
         let corners = |t: &[u32; 3]| t.map(|i| positions[i as usize]);
         let classify = |chunk: &[[u32; 3]]| {
-            let mut sorted = Sorted::default();
+            let mut found = Chunk::default();
             for (i, triangle) in chunk.iter().enumerate() {
                 let tri = corners(triangle);
                 if tri.iter().any(|p| !p.is_finite()) {
-                    sorted.out.push((num::index(i), true));
+                    found.out.push((num::index(i), true));
                 } else if has_zero_area(&tri) {
-                    sorted.out.push((num::index(i), false));
+                    found.out.push((num::index(i), false));
                 } else {
-                    sorted.bounds = sorted.bounds.union(Aabb::of_triangle(&tri));
+                    found.bounds = found.bounds.union(Aabb::of_triangle(&tri));
                 }
             }
             cx.progress.advance(chunk.len() as u64);
-            cx.cancel.check().map(|()| sorted)
+            cx.cancel.check().map(|()| found)
         };
         cx.progress.start("classify", triangles.len() as u64);
-        let parts: Result<Vec<Sorted>, _> = cx.pool.run(|| triangles.par_chunks(CHUNK).map(classify).collect());
+        let parts: Result<Vec<Chunk>, _> = cx.pool.run(|| triangles.par_chunks(CHUNK).map(classify).collect());
         let parts = parts?;
 
-        self.world_bounds = parts.iter().fold(Aabb::EMPTY, |b, part| b.union(part.bounds));
+        let own = parts.iter().fold(Aabb::EMPTY, |b, part| b.union(part.bounds));
+        self.world_bounds = self.world_bounds.union(own);
         self.space = Space::new(&self.world_bounds);
+        // Where there is nothing a structure has a box all the same.
+        self.bounds = match own.is_empty() {
+            true => *self.space.bounds(),
+            false => Aabb { min: self.space.point(own.min), max: self.space.point(own.max) },
+        };
         let out: Vec<(u32, bool)> = parts
             .iter()
             .enumerate()
@@ -141,12 +199,17 @@ impl Geometry {
         &self.space
     }
 
-    /// The bounds of what structures hold, in the scaled space.
+    /// The bounds of the flattened triangles that structures hold, in the scaled space.
     pub fn bounds(&self) -> &Aabb {
-        self.space.bounds()
+        &self.bounds
     }
 
-    /// The same in the world; empty if there is nothing.
+    /// What stands in several places, if anything does.
+    pub fn placed(&self) -> Option<&Placed> {
+        self.placed.as_ref()
+    }
+
+    /// The bounds of the whole scene in the world; empty if there is nothing.
     pub fn world_bounds(&self) -> &Aabb {
         &self.world_bounds
     }
@@ -163,17 +226,51 @@ impl Geometry {
         (&self.positions, &self.triangles)
     }
 
-    /// How many triangles the scene has, dropped and degenerate ones counted.
+    /// The corners of the triangle that was hit, in the scaled space; those of a placed mesh are rounded once.
+    pub fn corners_of(&self, instance: u32, primitive: u32) -> [Vec3; 3] {
+        if let Some(prim) = self.owners.flat(instance, primitive) {
+            return self.corners(prim);
+        }
+        let found = self.placed.as_ref().and_then(|placed| Some((placed, placed.of_instance(instance)?)));
+        let Some((placed, place)) = found else { return [Vec3::ZERO; 3] };
+        let map = place.scene_from_part();
+        placed.parts()[place.part as usize].corners(primitive).map(|p| map.transform_point3(p.as_dvec3()).as_vec3())
+    }
+
+    /// How many triangles the whole scene has.
+    pub fn counts(&self) -> Counts {
+        let (triangles, live) = (self.triangles.len() as u64, self.live_count() as u64);
+        let own = Counts {
+            triangles: triangles + self.vanished,
+            dropped: self.dropped.into(),
+            degenerate: u64::from(self.degenerate) + self.vanished,
+            live,
+        };
+        self.placed.as_ref().map_or(own, |placed| Counts {
+            triangles: own.triangles + placed.sum(|part| part.triangles.len() as u64),
+            dropped: own.dropped + placed.sum(|part| part.dropped.into()),
+            degenerate: own.degenerate + placed.sum(|part| part.degenerate.into()),
+            live: own.live + placed.live_count(),
+        })
+    }
+
+    /// How many triangles were flattened, dropped and degenerate ones counted.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// How many triangles structures hold.
+    /// How many of them structures hold.
     pub fn live_count(&self) -> usize {
         match &self.live {
             Live::All => self.triangles.len(),
             Live::Some(list) => list.len(),
         }
+    }
+
+    /// How many triangles structures hold of what is stored: each mesh once.
+    pub fn stored_live(&self) -> usize {
+        let parts = self.placed.as_ref().map_or(&[][..], Placed::parts);
+        self.live_count() + parts.iter().map(|part| part.live_count()).sum::<usize>()
     }
 
     /// The `i`-th triangle that structures hold, ascending.
@@ -204,12 +301,12 @@ impl Geometry {
     /// What tells whose triangles are whose.
     #[inline(always)]
     pub fn whose(&self) -> Whose<'_> {
-        Whose { first_prim: &self.first_prim, shift: self.places.shift, instance: &self.places.instance }
+        self.owners.whose()
     }
 
-    /// The flattened index of a triangle of an instance.
-    pub fn flat(&self, instance: u32, primitive: u32) -> PrimRef {
-        self.first_prim[instance as usize] + primitive
+    /// The flattened index of a triangle of an instance; `None` if that stands in several places, or there is none.
+    pub fn flat(&self, instance: u32, primitive: u32) -> Option<PrimRef> {
+        self.owners.flat(instance, primitive)
     }
 
     /// Bytes of the shared geometry.
@@ -218,46 +315,15 @@ impl Geometry {
             Live::All => 0,
             Live::Some(list) => list.len() * 4,
         };
-        (self.positions.len() * 12 + self.triangles.len() * 12 + live + (self.first_prim.len() + self.places.instance.len()) * 4)
-            as u64
+        let own = (self.positions.len() * 12 + self.triangles.len() * 12 + live) as u64 + self.owners.bytes();
+        own + self.placed.as_ref().map_or(0, Placed::bytes)
     }
 }
 
-/// Tells the instance of many triangles.
-#[derive(Clone, Copy, Debug)]
-pub struct Whose<'a> {
-    first_prim: &'a [u32],
-    shift: u32,
-    instance: &'a [u32],
-}
-
-impl Whose<'_> {
-    /// As [`Geometry::locate`].
-    #[inline(always)]
-    pub fn locate(&self, prim: PrimRef) -> (u32, u32) {
-        let mut instance = self.instance[(prim >> (self.shift & 31)) as usize];
-        while self.first_prim[instance as usize + 1] <= prim {
-            instance += 1;
-        }
-        (instance, prim - self.first_prim[instance as usize])
-    }
-}
-
-/// Where to begin the search for the instance of a triangle: for each run of `2^shift` triangles the
-/// instance of the first.
-#[derive(Debug, Default)]
-struct Places {
-    shift: u32,
-    instance: Vec<u32>,
-}
-
-impl Places {
-    /// About as many runs as instances.
-    fn new(first_prim: &[u32]) -> Self {
-        let (prims, instances) = (first_prim.last().copied().unwrap_or(0), first_prim.len() as u32);
-        let shift = (prims / instances).max(1).ilog2();
-        let run = |i: u32| first_prim.partition_point(|first| *first <= i << shift) - 1;
-        Self { shift, instance: (0..=prims >> shift).map(|i| num::index(run(i))).collect() }
+impl<'a> Piece<'a> {
+    fn of(scene: &'a Scene, instance: u32) -> Self {
+        let placed = &scene.instances[instance as usize];
+        Self { mesh: &scene.meshes[placed.mesh], world_from_object: &placed.world_from_object, instance }
     }
 }
 
@@ -266,12 +332,12 @@ const CHUNK: usize = 1 << 14;
 
 /// What one chunk of triangles holds: those left out (index in the chunk, and whether it is not
 /// finite rather than of zero area), and the bounds of the rest.
-struct Sorted {
+struct Chunk {
     bounds: Aabb,
     out: Vec<(u32, bool)>,
 }
 
-impl Default for Sorted {
+impl Default for Chunk {
     fn default() -> Self {
         Self { bounds: Aabb::EMPTY, out: Vec::new() }
     }

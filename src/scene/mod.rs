@@ -6,23 +6,28 @@ pub mod builtin;
 mod camera;
 mod camera_spec;
 mod error;
+mod extremes;
 mod first_view;
 mod geometry;
 pub mod load;
 mod material;
 mod mesh;
+mod placed;
 mod source;
 mod subdivide;
+mod whose;
 
 pub use camera::{Camera, Frame, Projection};
 pub use camera_spec::CameraSpec;
 pub use error::{LoadError, Reason};
 pub use first_view::{FirstView, StoredCamera};
-pub use geometry::{Geometry, PrimRef, Whose};
+pub use geometry::{Counts, Geometry, PrimRef};
 pub use material::Material;
 pub use mesh::{Instance, Mesh};
+pub use placed::{Place, Placed};
 pub use source::{LoadCx, open};
 pub use subdivide::subdivide;
+pub use whose::Whose;
 
 use glam::Vec3;
 

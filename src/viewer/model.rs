@@ -50,7 +50,7 @@ fn case(model: &str) -> Option<Result<(Scene, Vec<Ray>), LoadError>> {
     Some(Ok((trial.scene(model), trial.rays)))
 }
 
-/// Loads and flattens a model.
+/// Loads a model; meshes that stand in several places are kept once.
 ///
 /// # Errors
 /// [`LoadError`], with the file, the place and the reason.
@@ -65,7 +65,7 @@ pub fn load(
     let start = Instant::now();
     let cx = LoadCx { cancel: cancel.clone(), progress: progress.clone(), budget: budget.clone(), pool: pool.clone() };
     let (scene, rays) = case(model).unwrap_or_else(|| Ok((scene::open(model, &cx)?, Vec::new())))?;
-    let geometry = Geometry::new(&scene, &cx).map_err(|reason| reason.of(model))?;
+    let geometry = Geometry::with_instances(&scene, &cx).map_err(|reason| reason.of(model))?;
     let geometry = Arc::new(geometry);
     let raster = Arc::new(RasterMesh::new(generation, Arc::clone(&geometry)));
     Ok(Model { scene: Arc::new(scene), geometry, raster, load_secs: start.elapsed().as_secs_f64(), rays: Arc::new(rays) })

@@ -8,7 +8,7 @@ use super::gpu::{BoxInstance, Overlay, Ruler, View};
 use super::settings::OverlaySettings;
 use super::theme;
 use crate::accel::Accel;
-use crate::accel::cell::{Cell, CellKind, Descend, Layout, Split, walk};
+use crate::accel::cell::{Cell, CellKind, Descend, Layout, Split, bounds_in_scene, walk};
 use crate::geometry::{Aabb, Axis};
 use crate::task::{Cancel, Cancelled};
 
@@ -54,8 +54,9 @@ struct Found {
 }
 
 impl Found {
-    fn new(cell: &Cell, px: f32) -> Self {
-        Self { px, depth: cell.depth, bounds: *cell.shape.bounds(), plane: false, rank: scatter(cell.id.node) }
+    fn new(cell: &Cell, bounds: Aabb, px: f32) -> Self {
+        let number = cell.id.node ^ scatter(cell.id.instance);
+        Self { px, depth: cell.depth, bounds, plane: false, rank: scatter(number) }
     }
 
     fn order(&self) -> (Reverse<u32>, u32, bool) {
@@ -105,16 +106,16 @@ pub fn collect(accel: &dyn Accel, wanted: &Wanted, cancel: &Cancel) -> Result<Co
         if looked.is_multiple_of(CELLS_PER_CHECK) {
             stopped = cancel.check();
         }
-        if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(cell)) }
+        if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell)) }
     });
     stopped?;
     Ok(collector.finish())
 }
 
 impl Collector<'_> {
-    fn visit(&mut self, cell: &Cell) -> Descend {
+    fn visit(&mut self, accel: &dyn Accel, cell: &Cell) -> Descend {
         let s = &self.wanted.settings;
-        let bounds = *cell.shape.bounds();
+        let bounds = bounds_in_scene(accel, cell);
         let Some(px) = self.ruler.pixels(&bounds) else {
             self.more |= !cell.is_leaf();
             self.total += usize::from(self.wants_box(cell));
@@ -123,16 +124,18 @@ impl Collector<'_> {
         if self.wants_box(cell) {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found::new(cell, px));
+                self.found.push(Found::new(cell, bounds, px));
             }
         }
         if let Some(Split::Axis { axis, pos }) = cell.split
             && s.planes
+            // A placed mesh may be turned; its planes are not parallel to the axes then.
+            && bounds == *cell.shape.bounds()
             && (s.from_depth..=s.depth).contains(&cell.depth)
         {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found { bounds: plane_in(&bounds, axis, pos), plane: true, ..Found::new(cell, px) });
+                self.found.push(Found { bounds: plane_in(&bounds, axis, pos), plane: true, ..Found::new(cell, bounds, px) });
             }
         }
         let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::format;
 use super::gpu::BoxInstance;
-use crate::accel::cell::{Cell, Descend, walk};
+use crate::accel::cell::{Cell, Descend, bounds_in_scene, walk};
 use crate::accel::probe::{Counts, Step, Watched};
 use crate::accel::{Accel, Hit, Mode};
 use crate::geometry::{Aabb, Ray};
@@ -19,6 +19,8 @@ pub struct Picked {
     pub text: String,
     /// The cells that hold the point, from the root to the leaf.
     pub path: Vec<Cell>,
+    /// Their boxes, in the scene's scaled space.
+    pub boxes: Vec<Aabb>,
     /// Which of them is selected.
     pub level: usize,
     /// What the ray of the click did, step by step.
@@ -35,7 +37,7 @@ impl Picked {
 
     /// Its box, in the scaled space.
     pub fn selected_box(&self) -> Option<BoxInstance> {
-        self.selected().map(|cell| BoxInstance::new(cell.shape.bounds(), [u8::MAX; 4]))
+        self.boxes.get(self.level).map(|bounds| BoxInstance::new(bounds, [u8::MAX; 4]))
     }
 }
 
@@ -58,21 +60,28 @@ pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray, cancel: &Cancel) -> Res
     let depth = path.last().map(|leaf| format!(", leaf at depth {}", leaf.depth)).unwrap_or_default();
     let work = format!("{} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
     let text = format!("Triangle {}{name}{depth}: this ray took {work}", format::count(u64::from(hit.primitive)));
-    Ok(Some(Picked { text, level: path.len().saturating_sub(1), path, steps, more_steps }))
+    let boxes = path.iter().map(|cell| bounds_in_scene(accel, cell)).collect();
+    Ok(Some(Picked { text, level: path.len().saturating_sub(1), path, boxes, steps, more_steps }))
 }
 
 /// The cells from the root to the leaf that holds the triangle and the point; empty if none does.
 fn path_to(accel: &dyn Accel, ray: &Ray, hit: &Hit) -> Vec<Cell> {
     let geometry = accel.geometry();
-    let prim = geometry.flat(hit.instance, hit.primitive);
+    // What was flattened has numbers of its own.
+    let flat = geometry.flat(hit.instance, hit.primitive);
+    let prim = flat.unwrap_or(hit.primitive);
+    let is_of = |cell: &Cell| match accel.level(cell.id.instance) {
+        None => true,
+        Some(level) if flat.is_some() => level.instance.is_none(),
+        Some(level) => level.instance == Some(hit.instance),
+    };
     let point = geometry.space().point(ray.at(hit.t));
-    let slack = Vec3::splat(1e-4 * geometry.bounds().size().max_element());
+    let slack = Vec3::splat(1e-4 * geometry.space().bounds().size().max_element());
     let near = Aabb { min: point - slack, max: point + slack };
     let (mut path, mut found) = (Vec::new(), false);
     walk(accel, &mut |cell| {
         path.truncate(cell.depth as usize);
-        let bounds = *cell.shape.bounds();
-        if bounds.intersection(near).is_empty() {
+        if !is_of(cell) || bounds_in_scene(accel, cell).intersection(near).is_empty() {
             return ControlFlow::Continue(Descend::No);
         }
         path.push(*cell);

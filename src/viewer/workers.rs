@@ -18,7 +18,7 @@ use crate::job::Job;
 use crate::lab::stability::{self, CaseRow, cases};
 use crate::lab::{
     self, CheckError, Checked, Contestant, Costs, Enough, FitOptions, MeasureOptions, ModelCheck, Quality, QualityOptions,
-    RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure_with_raster, sah_curves,
+    RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure, measure_with_raster, sah_curves,
 };
 use crate::render;
 use crate::scene::{Camera, Geometry, LoadError, Scene};
@@ -93,7 +93,7 @@ pub fn count(shared: &Shared, built: &Built) -> std::io::Result<Counting> {
     let (accel, weights) = (Arc::clone(&built.accel), SahWeights::of(&built.key.params));
     let Shared { pool, budget, .. } = shared.clone();
     let job = Job::spawn("statistics", shared.waker(), move |cancel, _| {
-        let stats = Stats::of(accel.as_ref(), weights, cancel)?;
+        let stats = Stats::of_structure(accel.as_ref(), weights, cancel)?;
         let quality = Quality::of(accel.as_ref(), &stats, weights, &SOON, (&pool, &budget, cancel))?;
         Ok((stats, quality))
     })?;
@@ -189,9 +189,13 @@ pub fn measure_all(shared: &Shared, plan: Plan, pause: render::progressive::Paus
         let contestant = |b: &Built| Contestant { id: b.key.entry.id.to_owned(), accel: Arc::clone(&b.accel) };
         let contestants: Vec<Contestant> = measured.built.iter().map(contestant).collect();
         let options = MeasureOptions::default();
-        let race = measure_with_raster(&contestants, &rays, &view, size_px, &options, &pool, cancel, progress);
-        let (timings, raster) = race?;
-        (measured.timings, measured.raster) = (timings, Some(raster));
+        if view.accel.levels().is_some() {
+            // The rasteriser draws flattened triangles alone.
+            measured.timings = measure(&contestants, &rays, &options, &pool, cancel, progress)?;
+        } else {
+            let (timings, raster) = measure_with_raster(&contestants, &rays, &view, size_px, &options, &pool, cancel, progress)?;
+            (measured.timings, measured.raster) = (timings, Some(raster));
+        }
         // Lines beside the view's rays: the more the rays differ, the better the costs are told apart.
         let lines = RaySet::lines(view.accel.geometry(), 1 << 16, &pool, cancel)?;
         let options = FitOptions { cap_secs: 2.0, ..FitOptions::default() };

@@ -31,7 +31,10 @@ fn expected(model: &str, rays: &str, id: &str, mode: Mode) -> (Vec<Ray>, Hits) {
             t: found.iter().map(|h| h.map_or(f32::INFINITY, |h| h.t)).collect(),
             u: found.iter().map(|h| h.map_or(0.0, |h| h.u)).collect(),
             v: found.iter().map(|h| h.map_or(0.0, |h| h.v)).collect(),
-            primitive: found.iter().map(|h| h.map_or(u32::MAX, |h| geometry.flat(h.instance, h.primitive))).collect(),
+            primitive: found
+                .iter()
+                .map(|h| h.map_or(u32::MAX, |h| geometry.flat(h.instance, h.primitive).expect("flat")))
+                .collect(),
         },
         Mode::Any => Hits {
             t: found.iter().map(|h| if h.is_some() { 0.0 } else { f32::INFINITY }).collect(),

@@ -20,7 +20,7 @@ use super::tree::{Built, MAX_DEPTH, Node, Packed};
 use super::{morton, ploc};
 use crate::accel::params::ParamValues;
 use crate::accel::{BuildCx, BuildError};
-use crate::geometry::num;
+use crate::geometry::{Aabb, num};
 use crate::scene::Geometry;
 use crate::task::{Charge, OverBudget};
 
@@ -168,6 +168,24 @@ pub fn build(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<
     let bytes = draft.nodes.capacity() * size_of::<Node>() + size_of_val(&packed[..]);
     let charge = cx.budget.charge(bytes as u64).map_err(too_large)?;
     Ok(Built { geometry: Arc::clone(geometry), nodes: draft.nodes, packed, splits, remarks, _charge: charge })
+}
+
+/// A tree over boxes, one in a leaf, whatever is in them; leaves refer to them by their index.
+///
+/// # Errors
+/// Cancelled.
+pub fn over_boxes(boxes: &[Aabb], cx: &BuildCx) -> Result<Draft, BuildError> {
+    let boxed = |(i, b): (usize, &Aabb)| PrimBox::new(&Bounds::from(b), num::index(i));
+    let mut prims: Vec<PrimBox> = boxes.iter().enumerate().map(boxed).collect();
+    let binned = Binned { bins: 32, costs: Costs { c_trav: 1.0, c_isect: 1.0 } };
+    let limits = Limits { max_leaf: 1, max_depth: MAX_DEPTH };
+    let tree = in_place(binned, &mut prims, limits, cx)?;
+    Ok(cx.pool.run(|| tree.joined()))
+}
+
+/// What [`over_boxes`] takes while it works.
+pub const fn bytes_over_boxes(boxes: usize) -> usize {
+    boxes * (size_of::<Aabb>() + size_of::<PrimBox>()) + 2 * Draft::bytes(boxes)
 }
 
 fn too_large(over: OverBudget) -> BuildError {

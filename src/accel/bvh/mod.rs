@@ -25,7 +25,7 @@ mod sweep;
 mod topdown;
 mod tree;
 
-pub use build::{Auto, Drafted};
+pub use build::{Auto, Drafted, bytes_over_boxes, over_boxes};
 pub use draft::Draft;
 pub use tree::{Built, MAX_DEPTH, Node, Packed};
 

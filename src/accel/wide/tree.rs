@@ -131,6 +131,11 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         if P::WATCHES { self.plainly(ray, query, probe) } else { self.one(ray, query, probe) }
     }
 
+    fn trace_alone<Q: Query>(&self, ray: &Ray, query: &Q, off: Off, cancel: &Cancel) -> Result<Option<PrimHit>, Cancelled> {
+        cancel.check()?;
+        Ok(if off.is_plain() { self.plainly(ray, query, &mut Off::plain()) } else { self.one(ray, query, &mut Off::plain()) })
+    }
+
     fn trace_batch<Q: Query>(
         &self,
         rays: &[Ray],
@@ -140,9 +145,8 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
     ) -> Result<Traced, Cancelled> {
         // One ray has nobody to go with.
         if let ([ray], [hit]) = (rays, &mut *hits) {
-            cancel.check()?;
             let mut traced = Traced::default();
-            *hit = in_scaled_space(&self.geometry, ray, &mut traced, |ray| Ok(self.one(ray, query, &mut Off::plain())))?;
+            *hit = in_scaled_space(&self.geometry, ray, &mut traced, |ray| self.trace_alone(ray, query, Off::best(), cancel))?;
             return Ok(traced);
         }
         if self.root == Child::NONE {
@@ -151,19 +155,9 @@ impl<T: TriTest, B: Pack> Structure for Tree<T, B> {
         with_under_way(|under_way| match self.road.run_wide(Batch { tree: self, rays, query, hits, cancel, under_way }) {
             Ok(traced) => traced,
             Err(Batch { hits, .. }) => {
-                one_by_one(&self.geometry, rays, hits, |ray| cancel.check().map(|()| self.plainly(ray, query, &mut Off::plain())))
+                one_by_one(&self.geometry, rays, hits, |ray| self.trace_alone(ray, query, Off::plain(), cancel))
             }
         })
-    }
-
-    fn trace_plain<Q: Query>(
-        &self,
-        rays: &[Ray],
-        query: &Q,
-        hits: &mut [Option<Hit>],
-        cancel: &Cancel,
-    ) -> Result<Traced, Cancelled> {
-        one_by_one(&self.geometry, rays, hits, |ray| cancel.check().map(|()| self.plainly(ray, query, &mut Off::plain())))
     }
 }
 

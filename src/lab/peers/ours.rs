@@ -9,7 +9,7 @@ use crate::accel::{Accel, BuildCx, BuildError, Hit, Mode};
 use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::lab::build_timed;
-use crate::scene::Geometry;
+use crate::scene::{Geometry, PrimRef};
 use crate::task::{Budget, Cancel, Pool, Progress};
 
 /// A registered structure, with its parameters and its triangle test.
@@ -89,7 +89,7 @@ pub(super) fn found(ray: &Ray, hit: Option<&Hit>, mode: Mode, geometry: &Geometr
         Some(_) if mode == Mode::Any => Found::SOMETHING,
         Some(hit) => {
             let t = geometry.space().enter(ray).back.scaled_t(hit.t);
-            Found { t, prim: geometry.flat(hit.instance, hit.primitive) }
+            Found { t, prim: geometry.flat(hit.instance, hit.primitive).unwrap_or(PrimRef::MAX) }
         }
     }
 }

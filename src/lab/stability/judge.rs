@@ -122,7 +122,7 @@ impl Expected {
             };
         };
         let prim = geometry.flat(hit.instance, hit.primitive);
-        let Some(candidate) = self.acceptable.iter().find(|c| c.prim == prim) else { return Err(wrong) };
+        let Some(candidate) = self.acceptable.iter().find(|c| Some(c.prim) == prim) else { return Err(wrong) };
         // Written in the world, t was rounded again.
         let t = f64::from(back.scaled_t(hit.t));
         let spare = back.rounding(hit.t);

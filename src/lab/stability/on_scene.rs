@@ -174,7 +174,7 @@ fn explained(test: TestKind, geometry: &Geometry, entered: &Entered, hit: Option
     if (hit.instance, hit.primitive) != (exact.instance, exact.primitive) {
         return false;
     }
-    let tri = geometry.corners(geometry.flat(hit.instance, hit.primitive));
+    let tri = geometry.corners_of(hit.instance, hit.primitive);
     let bound = bounds(test, &entered.ray, &tri).t;
     let [t, exactly] = [hit, exact].map(|hit| f64::from(entered.back.scaled_t(hit.t)));
     if test == TestKind::Exact && entered.back.rounding(exact.t) == 0.0 {

@@ -31,6 +31,9 @@ pub const SCHEME: &str = "builtin:";
 /// The most triangles that may be asked for.
 pub const MAX_TRIANGLES: usize = 50_000_000;
 
+/// The same where each mesh is counted as often as it is placed.
+pub const MAX_PLACED: usize = 2_000_000_000;
+
 /// Makes the scene with about so many triangles.
 type Generate = fn(usize, &LoadCx) -> Result<Scene, Reason>;
 
@@ -54,18 +57,29 @@ pub enum Size {
     /// So many unless told otherwise by `?triangles=N`, which the scene comes as near to as its
     /// construction allows. Ten million are made in seconds; [`MAX_TRIANGLES`] is the limit.
     Scales(usize),
+    /// The same, but meshes are placed many times, and [`MAX_PLACED`] is the limit.
+    Places(usize),
 }
 
 impl Size {
     /// The number of triangles when nothing is said.
     pub const fn by_default(self) -> usize {
         match self {
-            Self::Fixed(n) | Self::Scales(n) => n,
+            Self::Fixed(n) | Self::Scales(n) | Self::Places(n) => n,
+        }
+    }
+
+    /// The most that may be asked for.
+    pub const fn most(self) -> usize {
+        match self {
+            Self::Fixed(n) => n,
+            Self::Scales(_) => MAX_TRIANGLES,
+            Self::Places(_) => MAX_PLACED,
         }
     }
 }
 
-use Size::{Fixed, Scales};
+use Size::{Fixed, Places, Scales};
 
 #[rustfmt::skip]
 static ALL: [Builtin; 9] = [
@@ -73,7 +87,7 @@ static ALL: [Builtin; 9] = [
     scene("teapot", "The Utah teapot, from its Bezier patches.", Scales(6_320), teapot::generate),
     scene("teapot-in-stadium", "A small teapot in a huge stadium, which a uniform grid puts into one cell.", Scales(20_224), teapot_in_stadium::generate),
     scene("cornell-box", "The Cornell box, as measured.", Scales(38), cornell_box::generate),
-    scene("sphere-flake", "Haines' sphere flake: one sphere, placed hundreds of times.", Scales(104_962), sphere_flake::generate),
+    scene("sphere-flake", "Haines' sphere flake: one sphere, placed hundreds of times.", Places(104_962), sphere_flake::generate),
     scene("menger", "A Menger sponge: large flat faces, all parallel to the axes.", Scales(36_096), menger::generate),
     scene("terrain", "Mountains: an even sheet of small triangles.", Scales(131_072), terrain::generate),
     scene("hair", "A ball of hair: long thin triangles, whose boxes are mostly empty.", Scales(100_000), hair::generate),

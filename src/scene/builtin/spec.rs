@@ -1,6 +1,6 @@
 //! What follows `builtin:`: the name of a scene, and how large it shall be.
 
-use super::{ALL, Builtin, MAX_TRIANGLES, Size};
+use super::{ALL, Builtin, Size};
 use crate::scene::Reason;
 
 /// A scene and the number of triangles to aim for.
@@ -17,7 +17,7 @@ impl Spec {
         let mut triangles = None;
         for option in options.into_iter().flat_map(|list| list.split('&')) {
             let value = value_of(option, scene)?;
-            if triangles.replace(count(value)?).is_some() {
+            if triangles.replace(count(value, scene.size.most())?).is_some() {
                 return Err(Reason::Builtin("the option 'triangles' is given twice".into()));
             }
         }
@@ -32,9 +32,9 @@ fn unknown(name: &str) -> Reason {
 
 /// The `N` of `triangles=N`, if the scene takes that option.
 fn value_of<'a>(option: &'a str, scene: &Builtin) -> Result<&'a str, Reason> {
-    let Size::Scales(_) = scene.size else {
+    if let Size::Fixed(_) = scene.size {
         return Err(Reason::Builtin(format!("'{}' has a fixed size and takes no options", scene.id)));
-    };
+    }
     let (key, value) = option.split_once('=').unwrap_or((option, ""));
     if key == "triangles" {
         return Ok(value);
@@ -42,11 +42,11 @@ fn value_of<'a>(option: &'a str, scene: &Builtin) -> Result<&'a str, Reason> {
     Err(Reason::Builtin(format!("'{}' has no option '{key}'. Its only option is triangles=N", scene.id)))
 }
 
-fn count(value: &str) -> Result<usize, Reason> {
+fn count(value: &str, most: usize) -> Result<usize, Reason> {
     let digits = !value.is_empty() && value.bytes().all(|b| b.is_ascii_digit());
     match value.parse() {
-        Ok(n @ 1..=MAX_TRIANGLES) if digits => Ok(n),
-        _ => Err(Reason::Builtin(format!("'triangles={value}' does not say a whole number from 1 to {MAX_TRIANGLES}"))),
+        Ok(n) if digits && (1..=most).contains(&n) => Ok(n),
+        _ => Err(Reason::Builtin(format!("'triangles={value}' does not say a whole number from 1 to {most}"))),
     }
 }
 
@@ -64,6 +64,7 @@ mod tests {
         assert_eq!(read("hair"), Some(("hair", 100_000)));
         assert_eq!(read("soup?triangles=1"), Some(("soup", 1)));
         assert_eq!(read("soup?triangles=50000000"), Some(("soup", 50_000_000)));
+        assert_eq!(read("sphere-flake?triangles=1000000000"), Some(("sphere-flake", 1_000_000_000)));
     }
 
     #[test]

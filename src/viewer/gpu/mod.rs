@@ -25,6 +25,7 @@ mod pipeline;
 mod planes;
 mod raster;
 mod renderer;
+mod sources;
 mod targets;
 #[cfg(test)]
 mod tests;

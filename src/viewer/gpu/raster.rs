@@ -8,9 +8,11 @@ use eframe::wgpu;
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
-use super::chunks::{Chunk, Chunks, sampled};
+use super::chunks::{Chunk, sampled};
 use super::layouts::Layouts;
 use super::pipeline::{Pass, Recipe};
+use super::sources::{Piece, Rows, Sources};
+use crate::geometry::num;
 use crate::scene::Geometry;
 
 /// The most bytes that go to the GPU in one frame: about a millisecond of work, more in software.
@@ -22,18 +24,21 @@ pub struct RasterMesh {
     generation: u64,
     geometry: Arc<Geometry>,
     uploaded: AtomicUsize,
+    /// How many triangles there are to draw, each counted as often as it stands somewhere.
+    drawn: usize,
 }
 
 impl RasterMesh {
     /// The triangles that structures hold of a scene; `generation` tells it from every other.
     pub fn new(generation: u64, geometry: Arc<Geometry>) -> Self {
-        Self { generation, geometry, uploaded: AtomicUsize::new(0) }
+        let drawn = usize::try_from(geometry.counts().live).unwrap_or(usize::MAX);
+        Self { generation, geometry, uploaded: AtomicUsize::new(0), drawn }
     }
 
-    /// How many triangles are on the GPU, and how many there are. Where the two differ another frame
-    /// is needed: triangles that are not there yet are not drawn.
+    /// How many triangles are on the GPU, and how many there are, those of a mesh counted once. Where the two differ
+    /// another frame is needed: triangles that are not there yet are not drawn.
     pub fn progress(&self) -> (usize, usize) {
-        (self.uploaded.load(Ordering::Relaxed), self.geometry.live_count())
+        (self.uploaded.load(Ordering::Relaxed), self.geometry.stored_live())
     }
 
     pub(super) fn generation(&self) -> u64 {
@@ -62,11 +67,16 @@ impl RasterPipeline {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![0 => Float32x3],
         };
+        let places = wgpu::VertexBufferLayout {
+            array_stride: size_of::<Rows>() as u64,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4],
+        };
         let recipe = Recipe {
             label: "raster",
             source: concat!(include_str!("view.wgsl"), include_str!("raster.wgsl")),
             groups: &[&layouts.uniform],
-            vertices: &[Some(vertices)],
+            vertices: &[Some(vertices), Some(places)],
             pass: Pass::Solid,
             ..Recipe::default()
         };
@@ -76,11 +86,17 @@ impl RasterPipeline {
     /// Draws what is there of the mesh; the view is group 0.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, buffers: &MeshBuffers, max_triangles: usize) {
         pass.set_pipeline(&self.0);
-        let total = buffers.mesh.geometry.live_count();
+        let total = buffers.mesh.drawn;
         for chunk in &buffers.chunks {
             pass.set_vertex_buffer(0, chunk.positions.slice(..));
             pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint16);
-            pass.draw_indexed(0..3 * sampled(chunk.triangles, total, max_triangles), 0, 0..1);
+            let triangles = sampled(chunk.triangles, total, max_triangles);
+            for places in &buffers.places[chunk.source] {
+                // Where even one triangle a place is too much, some places are left out.
+                let most = sampled(places.count * chunk.triangles, total, max_triangles).div_ceil(triangles.max(1));
+                pass.set_vertex_buffer(1, places.rows.slice(..));
+                pass.draw_indexed(0..3 * triangles, 0, 0..most.min(num::index(places.count)));
+            }
         }
     }
 }
@@ -89,20 +105,30 @@ impl RasterPipeline {
 pub(super) struct MeshBuffers {
     mesh: Arc<RasterMesh>,
     chunks: Vec<ChunkBuffers>,
+    /// Where the meshes stand, by source.
+    places: Vec<Vec<Places>>,
     /// What is still to come; `None` once all is there.
-    rest: Option<Chunks>,
+    rest: Option<Sources>,
 }
 
 struct ChunkBuffers {
+    source: usize,
     positions: wgpu::Buffer,
     indices: wgpu::Buffer,
     triangles: usize,
 }
 
+/// Some of the places of a mesh.
+struct Places {
+    rows: wgpu::Buffer,
+    count: usize,
+}
+
 impl MeshBuffers {
     pub(super) fn new(mesh: &Arc<RasterMesh>) -> Self {
         mesh.uploaded.store(0, Ordering::Relaxed);
-        Self { mesh: Arc::clone(mesh), chunks: Vec::new(), rest: Some(Chunks::new(Arc::clone(&mesh.geometry))) }
+        let rest = Some(Sources::new(Arc::clone(&mesh.geometry)));
+        Self { mesh: Arc::clone(mesh), chunks: Vec::new(), places: Vec::new(), rest }
     }
 
     pub(super) fn generation(&self) -> u64 {
@@ -119,26 +145,38 @@ impl MeshBuffers {
         let Some(rest) = &mut self.rest else { return };
         let mut bytes = 0;
         while bytes < BYTES_PER_FRAME {
-            let Some(chunk) = rest.next() else {
-                self.rest = None;
-                return;
-            };
-            bytes += chunk.bytes();
-            self.mesh.uploaded.fetch_add(chunk.triangles.len(), Ordering::Relaxed);
-            self.chunks.push(ChunkBuffers::new(device, &chunk));
+            match rest.next() {
+                None => {
+                    self.rest = None;
+                    return;
+                }
+                Some(Piece::Places { source, rows }) => {
+                    bytes += size_of_val(&rows[..]);
+                    self.places.resize_with(self.places.len().max(source + 1), Vec::new);
+                    let (contents, usage) = (bytemuck::cast_slice(&rows), wgpu::BufferUsages::VERTEX);
+                    self.places[source].push(Places { rows: filled(device, "places", contents, usage), count: rows.len() });
+                }
+                Some(Piece::Triangles { source, chunk }) => {
+                    bytes += chunk.bytes();
+                    self.mesh.uploaded.fetch_add(chunk.triangles.len(), Ordering::Relaxed);
+                    self.chunks.push(ChunkBuffers::new(device, source, &chunk));
+                }
+            }
         }
     }
 }
 
 impl ChunkBuffers {
-    fn new(device: &wgpu::Device, chunk: &Chunk) -> Self {
-        let make = |label, contents, usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
-        };
+    fn new(device: &wgpu::Device, source: usize, chunk: &Chunk) -> Self {
         Self {
-            positions: make("mesh positions", bytemuck::cast_slice(&chunk.positions), wgpu::BufferUsages::VERTEX),
-            indices: make("mesh indices", bytemuck::cast_slice(&chunk.triangles), wgpu::BufferUsages::INDEX),
+            source,
+            positions: filled(device, "mesh positions", bytemuck::cast_slice(&chunk.positions), wgpu::BufferUsages::VERTEX),
+            indices: filled(device, "mesh indices", bytemuck::cast_slice(&chunk.triangles), wgpu::BufferUsages::INDEX),
             triangles: chunk.triangles.len(),
         }
     }
+}
+
+fn filled(device: &wgpu::Device, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
 }

@@ -5,9 +5,11 @@ struct Corner {
     @location(0) seen: vec3f,
 }
 
+// Each instance has the rows of the way from its mesh into the scene.
 @vertex
-fn vertex(@location(0) p: vec3f) -> Corner {
-    let seen = seen_from_eye(p);
+fn vertex(@location(0) p: vec3f, @location(1) x: vec4f, @location(2) y: vec4f, @location(3) z: vec4f) -> Corner {
+    let v = vec4f(p, 1.0);
+    let seen = seen_from_eye(vec3f(dot(x, v), dot(y, v), dot(z, v)));
     return Corner(clip_space(seen), seen);
 }
 

@@ -29,14 +29,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
         return;
     };
-    let (scene, geometry) = (&model.scene, &model.geometry);
+    let (scene, counts) = (&model.scene, model.geometry.counts());
     ui.label(RichText::new(short(&scene.name)).strong()).on_hover_text(&scene.name);
-    fact(
-        ui,
-        "Triangles",
-        format::count(geometry.triangle_count() as u64),
-        "Triangles of all instances, as they are in the file.",
-    );
+    fact(ui, "Triangles", format::count(counts.triangles), "Triangles of all instances, as they are in the file.");
     if scene.instances.len() > 1 {
         let help = "How many times meshes are placed, and how many different meshes there are.";
         fact(ui, "Instances of meshes", format!("{} of {}", scene.instances.len(), scene.meshes.len()), help);
@@ -46,13 +41,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         format!("{} × {} × {}", format::number(size.x.into()), format::number(size.y.into()), format::number(size.z.into()));
     fact(ui, "Extent", extent, "Width, height and depth of the box around everything, in the file's units.");
     let help = "Triangles with a corner that is not a finite number: they are left out everywhere.";
-    left_out(ui, "Dropped", geometry.dropped(), help);
-    left_out(
-        ui,
-        "Zero area",
-        geometry.degenerate(),
-        "Triangles without area: no ray can hit them, so structures do not hold them.",
-    );
+    left_out(ui, "Dropped", counts.dropped, help);
+    left_out(ui, "Zero area", counts.degenerate, "Triangles without area: no ray can hit them, so structures do not hold them.");
     fact(
         ui,
         "Loaded in",
@@ -62,9 +52,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     warnings(ui, &scene.warnings);
 }
 
-fn left_out(ui: &mut Ui, name: &str, count: u32, help: &str) {
+fn left_out(ui: &mut Ui, name: &str, count: u64, help: &str) {
     if count > 0 {
-        fact(ui, name, format::count(u64::from(count)), help);
+        fact(ui, name, format::count(count), help);
     }
 }
 

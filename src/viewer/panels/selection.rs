@@ -136,6 +136,8 @@ fn steps(ui: &mut Ui, picked: &Picked) {
 
 fn sentence(step: &Step) -> String {
     match step {
+        Step::Level(0) => "is back in the upper level".to_owned(),
+        Step::Level(instance) => format!("goes below entry {}", instance - 1),
         Step::Entered(node) => format!("enters {node}"),
         Step::Pruned(node, Prune::Missed) => format!("leaves {node} out: the ray misses it"),
         Step::Pruned(node, Prune::Outside) => format!("leaves {node} out: beyond the ray's interval"),

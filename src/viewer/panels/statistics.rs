@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         ui.spinner().on_hover_text("Working out the figures.");
         return;
     };
-    let triangles = state.model.as_ref().map_or(0, |m| m.geometry.live_count());
+    let triangles = state.model.as_ref().map_or(0, |m| m.geometry.stored_live());
     figures(ui, stats, triangles);
     traversal(ui, state);
     prediction::show(ui, state, built, commands);

@@ -1,0 +1,258 @@
+//! Meshes that stand in several places, each kept once: the lower level of a two-level structure, and
+//! where its parts stand in the upper one.
+//!
+//! A mesh that stands in one place is flattened with the rest of the scene, and so is one that its
+//! transform makes flat, or nearly so: rays could not be taken into its space.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::extremes::Extremes;
+use super::geometry::Piece;
+use super::{Geometry, LoadCx, Reason, Scene};
+use crate::geometry::num::{UNIT_ROUNDOFF, index, round_down, round_up};
+use crate::geometry::space::FAR;
+use crate::geometry::{Aabb, Space};
+use crate::task::{Cancelled, Charge};
+
+/// Meshes in several places.
+#[derive(Debug)]
+pub struct Placed {
+    parts: Vec<Arc<Geometry>>,
+    /// By part, and there by instance.
+    places: Vec<Place>,
+    /// Their numbers, by instance.
+    by_instance: Vec<u32>,
+    _memory: Charge,
+}
+
+/// One place of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Which of [`Placed::parts`] stands here.
+    pub part: u32,
+    /// Index of the instance in the scene.
+    pub instance: u32,
+    /// The box around it in the scene's scaled space, with room for every rounding of a ray that is taken into the part's
+    /// space and tested there.
+    pub bounds: Aabb,
+    /// From the scene's scaled space to the part's.
+    part_from_scene: DAffine3,
+}
+
+impl Place {
+    /// From the scene's scaled space to the part's.
+    pub const fn part_from_scene(&self) -> &DAffine3 {
+        &self.part_from_scene
+    }
+
+    /// And back.
+    pub fn scene_from_part(&self) -> DAffine3 {
+        self.part_from_scene.inverse()
+    }
+}
+
+/// The instances of a scene, sorted by what becomes of them.
+pub(super) struct Sorted {
+    /// Those to be flattened, ascending.
+    pub flat: Vec<u32>,
+    /// Those that stand, each by its mesh and with what it is, meshes in order.
+    standing: Vec<(usize, Vec<(u32, DAffine3)>)>,
+    /// Triangles of instances that their transform makes a line or a point.
+    pub vanished: u64,
+}
+
+impl Sorted {
+    /// Sorts the instances of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut of_mesh = vec![Vec::new(); scene.meshes.len()];
+        let mut sorted = Self { flat: Vec::new(), standing: Vec::new(), vanished: 0 };
+        for (i, instance) in scene.instances.iter().enumerate() {
+            let map = wide(&instance.world_from_object);
+            if rank_at_most_one(&map.matrix3) {
+                sorted.vanished += scene.meshes[instance.mesh].triangles.len() as u64;
+            } else if is_well_conditioned(&map) {
+                of_mesh[instance.mesh].push((index(i), map));
+            } else {
+                sorted.flat.push(index(i));
+            }
+        }
+        for (mesh, places) in of_mesh.into_iter().enumerate() {
+            match places.len() {
+                0 => {}
+                1 => sorted.flat.push(places[0].0),
+                _ => sorted.standing.push((mesh, places)),
+            }
+        }
+        sorted.flat.sort_unstable();
+        sorted
+    }
+
+    /// Whether nothing stands: a scene without a second level.
+    pub fn all_flat(&self) -> bool {
+        self.standing.is_empty()
+    }
+
+    /// Makes the parts, and finds the box around each place in the world. Instances for which 32 bits do not suffice join
+    /// those to be flattened.
+    pub fn place(&mut self, scene: &Scene, cx: &LoadCx) -> Result<(Standing, Aabb), Reason> {
+        let count: usize = self.standing.iter().map(|(_, places)| places.len()).sum();
+        let memory = cx.budget.charge((count * (size_of::<Place>() + 4)) as u64)?;
+        let mut standing = Standing { parts: Vec::new(), places: Vec::with_capacity(count), memory };
+        let mut bounds = Aabb::EMPTY;
+        for (mesh, places) in std::mem::take(&mut self.standing) {
+            let piece = Piece { mesh: &scene.meshes[mesh], world_from_object: &Affine3A::IDENTITY, instance: 0 };
+            let part = Geometry::of_pieces(&[piece], Aabb::EMPTY, cx)?;
+            if part.live_count() == 0 {
+                self.flat.extend(places.iter().map(|(instance, _)| *instance));
+                continue;
+            }
+            cx.progress.start("place", places.len() as u64);
+            let number = index(standing.parts.len());
+            for (place, instance, around) in boxes(&part, &places, cx)? {
+                match around {
+                    Some(around) => {
+                        bounds = bounds.union(around);
+                        standing.places.push((number, instance, place));
+                    }
+                    None => self.flat.push(instance),
+                }
+            }
+            standing.parts.push(Arc::new(part));
+        }
+        self.flat.sort_unstable();
+        Ok((standing, bounds))
+    }
+}
+
+/// Parts and places before the scene's space is known.
+pub(super) struct Standing {
+    parts: Vec<Arc<Geometry>>,
+    /// Part, instance, and the way from the part's scaled space to the world.
+    places: Vec<(u32, u32, DAffine3)>,
+    memory: Charge,
+}
+
+impl Standing {
+    /// Puts them into the scene's scaled space.
+    pub fn settle(self, space: &Space, cx: &LoadCx) -> Result<Placed, Reason> {
+        let extremes: Vec<Extremes> = self.parts.iter().map(|part| Extremes::new(part)).collect();
+        let scale = DAffine3::from_scale(DVec3::splat(space.scale()));
+        let settle = |(part, instance, world_from_part): &(u32, u32, DAffine3)| {
+            cx.cancel.check()?;
+            let scene_from_part = scale * *world_from_part;
+            let (min, max) = extremes[*part as usize].bounds(&scene_from_part);
+            let pad = pad(&self.parts[*part as usize], &scene_from_part.matrix3);
+            Ok(Place {
+                part: *part,
+                instance: *instance,
+                bounds: rounded(min - pad, max + pad),
+                part_from_scene: scene_from_part.inverse(),
+            })
+        };
+        let places: Result<Vec<Place>, Cancelled> = cx.pool.run(|| self.places.par_iter().map(settle).collect());
+        let places = places?;
+        let mut by_instance: Vec<u32> = (0..index(places.len())).collect();
+        by_instance.sort_unstable_by_key(|place| places[*place as usize].instance);
+        Ok(Placed { parts: self.parts, places, by_instance, _memory: self.memory })
+    }
+}
+
+impl Placed {
+    /// The meshes, each in its own scaled space.
+    pub fn parts(&self) -> &[Arc<Geometry>] {
+        &self.parts
+    }
+
+    /// Where they stand.
+    pub fn places(&self) -> &[Place] {
+        &self.places
+    }
+
+    /// Where a part stands.
+    pub fn places_of(&self, part: usize) -> &[Place] {
+        let of = |place: &Place| place.part as usize;
+        let first = self.places.partition_point(|place| of(place) < part);
+        &self.places[first..first + self.places[first..].partition_point(|place| of(place) == part)]
+    }
+
+    /// The place of an instance.
+    pub fn of_instance(&self, instance: u32) -> Option<&Place> {
+        let at = self.by_instance.binary_search_by_key(&instance, |place| self.places[*place as usize].instance).ok()?;
+        self.places.get(self.by_instance[at] as usize)
+    }
+
+    /// Triangles that structures hold, counted as often as they stand somewhere.
+    pub fn live_count(&self) -> u64 {
+        self.sum(|part| part.live_count() as u64)
+    }
+
+    /// The sum of a figure over all places.
+    pub fn sum(&self, of: impl Fn(&Geometry) -> u64) -> u64 {
+        self.places.iter().map(|place| of(&self.parts[place.part as usize])).sum()
+    }
+
+    /// Bytes of meshes and places.
+    pub fn bytes(&self) -> u64 {
+        self.parts.iter().map(|part| part.bytes()).sum::<u64>()
+            + (size_of_val(&self.places[..]) + size_of_val(&self.by_instance[..])) as u64
+    }
+}
+
+/// Each place with the way from the part to the world, and the box around it there if 32 bits hold it.
+type Boxed = (DAffine3, u32, Option<Aabb>);
+
+fn boxes(part: &Geometry, places: &[(u32, DAffine3)], cx: &LoadCx) -> Result<Vec<Boxed>, Cancelled> {
+    let extremes = Extremes::new(part);
+    let object_from_part = DAffine3::from_scale(DVec3::splat(1.0 / part.space().scale()));
+    let boxed = |(instance, world_from_object): &(u32, DAffine3)| {
+        cx.cancel.check()?;
+        cx.progress.advance(1);
+        let world_from_part = *world_from_object * object_from_part;
+        let (min, max) = extremes.bounds(&world_from_part);
+        let around = rounded(min, max);
+        let fits = around.min.is_finite() && around.max.is_finite();
+        Ok((world_from_part, *instance, fits.then_some(around)))
+    };
+    cx.pool.run(|| places.par_iter().map(boxed).collect())
+}
+
+/// How far outside the box around a place a ray may meet it, for being rounded in the part's space.
+///
+/// There an origin lies within [`FAR`] extents of the part, or is moved to within a few; let D be the greatest distance
+/// (in any component) from it to a corner of the part. The origin, the direction and t are rounded once each (1uD each,
+/// by axis of the part), boxes and triangle tests allow for `12uD + 2u|o|` (see [`crate::geometry::slabs`]): 17uD at
+/// most, taken as 24.
+fn pad(part: &Geometry, scene_from_part: &DMat3) -> DVec3 {
+    let bounds = part.bounds();
+    let extent = f64::from(bounds.size().max_element());
+    let reach = f64::from(bounds.min.abs().max(bounds.max.abs()).max_element()) + (FAR + 2.0) * extent;
+    let m = scene_from_part;
+    (m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()) * (24.0 * f64::from(UNIT_ROUNDOFF) * reach)
+}
+
+fn rounded(min: DVec3, max: DVec3) -> Aabb {
+    let (down, up) = (min.to_array().map(round_down), max.to_array().map(round_up));
+    Aabb { min: down.into(), max: up.into() }
+}
+
+/// A transform in 64 bits.
+fn wide(map: &Affine3A) -> DAffine3 {
+    map.as_daffine3()
+}
+
+/// Whether all points are brought onto one line: then no triangle has an area.
+fn rank_at_most_one(m: &DMat3) -> bool {
+    [m.x_axis, m.y_axis, m.z_axis].iter().filter(|axis| **axis != DVec3::ZERO).count() <= 1
+}
+
+/// Whether rays can be taken into the space of the mesh and lose next to nothing of their 32 bits.
+fn is_well_conditioned(map: &DAffine3) -> bool {
+    const MOST: f64 = (1u32 << 20) as f64;
+    let size = |m: &DMat3| m.x_axis.length().max(m.y_axis.length()).max(m.z_axis.length());
+    let back = map.inverse();
+    let condition = size(&map.matrix3) * size(&back.matrix3);
+    map.is_finite() && back.is_finite() && condition <= MOST
+}
