@@ -82,6 +82,13 @@ impl Charge {
         Ok(())
     }
 
+    /// Gives back all but `bytes`, where it holds more.
+    pub fn shrink(&mut self, bytes: u64) {
+        let over = self.bytes.saturating_sub(bytes);
+        self.budget.0.used.fetch_sub(over, Ordering::Relaxed);
+        self.bytes -= over;
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> u64 {
         self.bytes
@@ -105,6 +112,10 @@ mod tests {
         assert_eq!(budget.charge(50).expect_err("does not fit").left, 40);
         held.grow(40).expect("fits exactly");
         assert_eq!((budget.used(), held.bytes()), (100, 100));
+        held.shrink(200);
+        assert_eq!(held.bytes(), 100);
+        held.shrink(30);
+        assert_eq!((budget.used(), held.bytes()), (30, 30));
         drop(held);
         assert_eq!(budget.used(), 0);
         assert!(budget.charge(u64::MAX).is_err());
