@@ -3,6 +3,7 @@
 
 mod common;
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use boxwood::scene::load::{Loader, Siblings, loaders};
@@ -16,6 +17,10 @@ struct Alone;
 impl Siblings for Alone {
     fn read(&self, name: &str) -> Result<Vec<u8>, Reason> {
         Err(Reason::Io { path: name.into(), error: std::io::ErrorKind::NotFound.into() })
+    }
+
+    fn locate(&self, name: &str) -> Result<PathBuf, Reason> {
+        Ok(name.into())
     }
 }
 

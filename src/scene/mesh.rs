@@ -16,7 +16,7 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Shading normals, not necessarily of unit length.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates.
+    /// The texture coordinates that the material's textures use; none where it has no texture.
     pub uvs: Vec<Vec2>,
     /// Linear vertex colours with opacity.
     pub colors: Vec<[f32; 4]>,

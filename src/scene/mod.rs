@@ -15,6 +15,7 @@ mod mesh;
 mod placed;
 mod source;
 mod subdivide;
+pub mod texture;
 mod whose;
 
 pub use camera::{Camera, Frame, Projection};
@@ -22,7 +23,7 @@ pub use camera_spec::CameraSpec;
 pub use error::{LoadError, Reason};
 pub use first_view::{FirstView, StoredCamera};
 pub use geometry::{Counts, Geometry, PrimRef};
-pub use material::Material;
+pub use material::{Alpha, AlphaTexture, Material};
 pub use mesh::{Instance, Mesh};
 pub use placed::{Place, Placed};
 pub use source::{LoadCx, open};
@@ -42,6 +43,8 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// What meshes are made of; a mesh refers to them by index.
     pub materials: Vec<Material>,
+    /// The images that materials use, not yet decoded; a material refers to them by index.
+    pub images: Vec<texture::Image>,
     /// The direction that is up: what the orbiting camera keeps upright.
     pub up: Vec3,
     /// A view that suits the model; without one the whole model is framed.

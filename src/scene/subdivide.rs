@@ -22,6 +22,7 @@ fn scene_without_meshes(scene: &Scene) -> Scene {
         meshes: Vec::new(),
         instances: scene.instances.clone(),
         materials: scene.materials.clone(),
+        images: scene.images.clone(),
         up: scene.up,
         camera: scene.camera,
         warnings: Vec::new(),

@@ -98,7 +98,7 @@ impl Surface {
     }
 
     fn material(&self) -> Material {
-        Material { name: self.name.into(), base_color: self.color, double_sided: true }
+        Material { name: self.name.into(), base_color: self.color, ..Material::PLAIN }
     }
 }
 

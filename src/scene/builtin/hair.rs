@@ -54,7 +54,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
 }
 
 fn material(name: &str, base_color: [f32; 4]) -> Material {
-    Material { name: name.into(), base_color, double_sided: true }
+    Material { name: name.into(), base_color, ..Material::PLAIN }
 }
 
 fn skin(cuts: u32) -> Mesh {

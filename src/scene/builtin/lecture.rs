@@ -81,7 +81,7 @@ impl Group {
     }
 
     fn material(&self) -> Material {
-        Material { name: self.name.into(), base_color: self.color, double_sided: true }
+        Material { name: self.name.into(), base_color: self.color, ..Material::PLAIN }
     }
 }
 

@@ -17,7 +17,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
     Ok(Scene {
         meshes: vec![Sponge::new(level).mesh(memory.bytes(), cx)?],
         instances: vec![Instance::identity(0)],
-        materials: vec![Material { name: "sandstone".into(), base_color: [0.60, 0.47, 0.32, 1.0], double_sided: true }],
+        materials: vec![Material { name: "sandstone".into(), base_color: [0.60, 0.47, 0.32, 1.0], ..Material::PLAIN }],
         up: Vec3::Z,
         camera: Some(view(Vec3::new(0.0, 0.0, -0.1), Vec3::new(2.3, -4.2, 2.6))),
         ..Scene::default()

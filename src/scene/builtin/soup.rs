@@ -19,7 +19,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
     Ok(Scene {
         meshes: vec![Mesh { name: "soup".into(), positions, triangles, material: Some(0), ..Mesh::default() }],
         instances: vec![Instance::identity(0)],
-        materials: vec![Material { name: "ochre".into(), base_color: [0.58, 0.43, 0.24, 1.0], double_sided: true }],
+        materials: vec![Material { name: "ochre".into(), base_color: [0.58, 0.43, 0.24, 1.0], ..Material::PLAIN }],
         up: Vec3::Z,
         camera: Some(view(Vec3::ZERO, Vec3::new(2.6, -4.2, 2.2))),
         ..Scene::default()

@@ -37,7 +37,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
 }
 
 fn material(name: &str, [r, g, b]: [f32; 3]) -> Material {
-    Material { name: name.into(), base_color: [r, g, b, 1.0], double_sided: true }
+    Material { name: name.into(), base_color: [r, g, b, 1.0], ..Material::PLAIN }
 }
 
 fn ball(cuts: u32) -> Mesh {

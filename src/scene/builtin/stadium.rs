@@ -74,7 +74,7 @@ impl Stadium {
     }
 
     pub fn materials() -> impl Iterator<Item = Material> {
-        MATERIALS.iter().map(|(name, color)| Material { name: (*name).into(), base_color: *color, double_sided: true })
+        MATERIALS.iter().map(|(name, color)| Material { name: (*name).into(), base_color: *color, ..Material::PLAIN })
     }
 
     /// One mesh for each material that is used; the first of the materials is the scene's `first`.

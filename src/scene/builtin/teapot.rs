@@ -29,7 +29,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
 
 /// Glazed stoneware.
 pub(super) fn material() -> Material {
-    Material { name: "stoneware".into(), base_color: [0.42, 0.55, 0.56, 1.0], double_sided: true }
+    Material { name: "stoneware".into(), base_color: [0.42, 0.55, 0.56, 1.0], ..Material::PLAIN }
 }
 
 /// Into how many pieces to cut each edge of a patch, to come nearest to this number of triangles. At

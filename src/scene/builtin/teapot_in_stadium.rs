@@ -31,7 +31,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
     // A millimetre above the plinth: they would touch in a single point.
     let foot = Vec3::Z * (PLINTH + 0.001);
     instances[0].world_from_object = Affine3A::from_translation(foot) * Affine3A::from_scale(Vec3::splat(SCALE));
-    let marble = Material { name: "marble".into(), base_color: [0.62, 0.60, 0.56, 1.0], double_sided: true };
+    let marble = Material { name: "marble".into(), base_color: [0.62, 0.60, 0.56, 1.0], ..Material::PLAIN };
     Ok(Scene {
         meshes,
         instances,

@@ -41,7 +41,7 @@ pub(super) fn generate(triangles: usize, cx: &LoadCx) -> Result<Scene, Reason> {
             ..Mesh::default()
         }],
         instances: vec![Instance::identity(0)],
-        materials: vec![Material { name: "ground".into(), base_color: [1.0; 4], double_sided: true }],
+        materials: vec![Material { name: "ground".into(), base_color: [1.0; 4], ..Material::PLAIN }],
         up: Vec3::Z,
         camera: Some(view(Vec3::new(-0.2, 0.2, 0.35), Vec3::new(2.2, -6.2, 2.9))),
         ..Scene::default()

@@ -63,12 +63,16 @@ impl<'a> Folder<'a> {
 
 impl Siblings for Folder<'_> {
     fn read(&self, name: &str) -> Result<Vec<u8>, Reason> {
+        read(&self.locate(name)?, self.cx, |_| ()).map(|(bytes, _memory)| bytes)
+    }
+
+    fn locate(&self, name: &str) -> Result<PathBuf, Reason> {
         if leads_elsewhere(name) {
             let what = "it is an absolute path or an address, and only files named relative to the model are read. \
                         Put it beside the model and refer to it by its name";
             return Err(Reason::malformed(name, what));
         }
-        read(&self.path(name), self.cx, |_| ()).map(|(bytes, _memory)| bytes)
+        Ok(self.path(name))
     }
 }
 

@@ -11,9 +11,11 @@ mod ply;
 mod stl;
 mod text;
 
-use std::path::Path;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
 
-use super::{LoadCx, Mesh, Reason, Scene};
+use super::{LoadCx, Mesh, Reason, Scene, texture};
+use crate::task::Charge;
 
 /// A reader of one format.
 pub trait Loader: Sync {
@@ -38,6 +40,12 @@ pub trait Siblings: Sync {
     /// # Errors
     /// It cannot be read, or `name` is no relative path.
     fn read(&self, name: &str) -> Result<Vec<u8>, Reason>;
+
+    /// Where the file is that the model calls `name`, for reading it later. It need not be there.
+    ///
+    /// # Errors
+    /// `name` is no relative path.
+    fn locate(&self, name: &str) -> Result<PathBuf, Reason>;
 }
 
 /// Every format there is, in the order in which they are listed to the user.
@@ -55,7 +63,14 @@ pub fn file(path: &Path, cx: &LoadCx) -> Result<Scene, Reason> {
     cx.progress.start("read", size);
     let (bytes, _memory) = disk::read(path, cx, |n| cx.progress.advance(n))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    loader.load(&bytes, &disk::Folder::new(folder, cx), cx)
+    let mut scene = loader.load(&bytes, &disk::Folder::new(folder, cx), cx)?;
+    texture::drop_idle_uvs(&mut scene);
+    Ok(scene)
+}
+
+/// Reads the file of an image, which [`Siblings::locate`] has found.
+pub(super) fn image_file(path: &Path, cx: &LoadCx) -> Result<(impl Deref<Target = [u8]>, Charge), Reason> {
+    disk::read(path, cx, |_| ())
 }
 
 fn by_extension(path: &Path) -> Result<&'static dyn Loader, Reason> {
@@ -74,7 +89,7 @@ fn mesh_bytes(mesh: &Mesh) -> u64 {
 
 /// From the sRGB curve (IEC 61966-2-1), which stored colours follow unless their format says
 /// otherwise, to linear.
-fn linear_from_srgb(rgb: [f32; 3]) -> [f32; 3] {
+pub(super) fn linear_from_srgb(rgb: [f32; 3]) -> [f32; 3] {
     rgb.map(unit).map(|c| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })
 }
 

@@ -13,6 +13,10 @@ impl Siblings for Beside<'_> {
         let missing = || Reason::Io { path: name.into(), error: std::io::ErrorKind::NotFound.into() };
         found.map(|(_, bytes)| bytes.to_vec()).ok_or_else(missing)
     }
+
+    fn locate(&self, name: &str) -> Result<PathBuf, Reason> {
+        Ok(name.into())
+    }
 }
 
 /// Loads a model that stands alone, and checks what every mesh promises.

@@ -94,7 +94,7 @@ impl<'a> Buffers<'a> {
 
     /// The name is escaped as an URI, which not every program knows: try it as written, too.
     fn file(&self, uri: &str) -> Result<Vec<u8>, Reason> {
-        let name = String::from_utf8(uri::unescape(uri)).unwrap_or_else(|_| uri.to_owned());
+        let name = uri::file_name(uri);
         match self.files.read(&name) {
             Err(Reason::Io { .. }) if name != uri => self.files.read(uri).or_else(|_| self.files.read(&name)),
             read => read,
@@ -104,7 +104,7 @@ impl<'a> Buffers<'a> {
     /// What a message calls the buffer: with its file, where it has one.
     fn name(&self, index: Index<buffer::Buffer>) -> String {
         let uri = self.root.get(index).and_then(|b| b.uri.as_deref());
-        let file = uri.filter(|uri| !uri.get(..5).unwrap_or_default().eq_ignore_ascii_case("data:"));
+        let file = uri.filter(|uri| !uri::is_data(uri));
         let called = file.map_or(String::new(), |file| format!(" ({})", clipped(file.as_bytes())));
         format!("buffer {}{called}", index.value())
     }

@@ -11,10 +11,12 @@ mod cameras;
 mod container;
 mod document;
 mod extensions;
+mod images;
 mod materials;
 mod nodes;
 mod picked;
 mod primitive;
+mod textures;
 mod uri;
 
 use std::ops::Range;
@@ -57,6 +59,7 @@ impl Loader for Gltf {
         if root.nodes.is_empty() && !scene.instances.is_empty() {
             scene.warnings.push("The file places its meshes nowhere; each is shown once, where it is.".to_owned());
         }
+        images::Images { root: &root, buffers: &buffers, files, cx }.take(&mut scene)?;
         Ok(scene)
     }
 }

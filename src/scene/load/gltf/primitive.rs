@@ -9,7 +9,7 @@ use gltf::json::{Accessor as Json, Index, Root};
 use super::accessor::{self, Accessor};
 use super::buffers::Buffers;
 use super::picked::Picked;
-use super::{extensions, materials};
+use super::{extensions, materials, textures};
 use crate::geometry::num;
 use crate::scene::load::pace::Pace;
 use crate::scene::load::text::clipped;
@@ -96,7 +96,10 @@ impl<'a, 'b> Primitives<'a, 'b> {
         if let Some(normals) = self.optional(primitive, Semantic::Normals, count, place)? {
             mesh.normals = self.read(&normals, picked, |a, i| Vec3::from_array(a.vector(i, [0.0; 3])))?;
         }
-        if let Some(uvs) = self.optional(primitive, Semantic::TexCoords(0), count, place)? {
+        // Where no image is looked up, nothing needs them.
+        let uv_set = mesh.material.and_then(|m| textures::uv_set(self.root, m)).map(Semantic::TexCoords);
+        let uvs = uv_set.map_or(Ok(None), |set| self.optional(primitive, set, count, place))?;
+        if let Some(uvs) = uvs {
             mesh.uvs = self.read(&uvs, picked, |a, i| Vec2::from_array(a.vector(i, [0.0; 2])))?;
         }
         if let Some(colors) = self.optional(primitive, Semantic::Colors(0), count, place)? {

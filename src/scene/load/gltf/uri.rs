@@ -1,4 +1,4 @@
-//! Where a buffer's bytes are: in the URI itself, or in a file that it names.
+//! Where the bytes of a buffer or an image are: in the URI itself, or in a file that it names.
 
 use base64::Engine;
 use base64::alphabet::STANDARD;
@@ -9,13 +9,22 @@ use crate::scene::{LoadCx, Reason};
 
 /// The bytes of a `data:` URI (RFC 2397), or `None` for any other.
 pub(super) fn data(uri: &str, place: &str, cx: &LoadCx) -> Result<Option<Vec<u8>>, Reason> {
-    let head = uri.get(..5).unwrap_or_default();
-    if !head.eq_ignore_ascii_case("data:") {
+    if !is_data(uri) {
         return Ok(None);
     }
     let bad = |what: &str| Reason::malformed(place, what);
     let (kind, data) = uri[5..].split_once(',').ok_or_else(|| bad("its data URI has no comma"))?;
     if kind.to_ascii_lowercase().ends_with(";base64") { base64(data, place, cx).map(Some) } else { Ok(Some(unescape(data))) }
+}
+
+/// Whether the bytes are in the URI itself.
+pub(super) fn is_data(uri: &str) -> bool {
+    uri.get(..5).unwrap_or_default().eq_ignore_ascii_case("data:")
+}
+
+/// The name of the file that a URI means.
+pub(super) fn file_name(uri: &str) -> String {
+    String::from_utf8(unescape(uri)).unwrap_or_else(|_| uri.to_owned())
 }
 
 /// Decodes piece by piece, so that a long one can be stopped.
@@ -38,7 +47,7 @@ fn base64(data: &str, place: &str, cx: &LoadCx) -> Result<Vec<u8>, Reason> {
 }
 
 /// Takes `%20` and the like for the bytes that they stand for (RFC 3986, section 2.1).
-pub(super) fn unescape(text: &str) -> Vec<u8> {
+fn unescape(text: &str) -> Vec<u8> {
     let bytes = text.as_bytes();
     let digit = |i: usize| bytes.get(i).and_then(|b| char::from(*b).to_digit(16)).and_then(|d| u8::try_from(d).ok());
     let mut out = Vec::with_capacity(bytes.len());
