@@ -1,11 +1,16 @@
-//! MTL files: colours and opacity by name. Nothing in them is worth failing a model for.
+//! MTL files: materials by name, and the images that they name. Nothing in them is worth failing a
+//! model for.
 
 use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
 
-use super::{each_statement, values};
-use crate::scene::load::text::{Line, float, lossy, words};
-use crate::scene::load::{Siblings, unit};
-use crate::scene::{LoadCx, Material, Reason};
+use super::each_statement;
+use super::maps::{self, Map};
+use super::material::Draft;
+use crate::scene::load::Siblings;
+use crate::scene::load::text::{lossy, words};
+use crate::scene::texture::{Channel, Image, ImageSource, TextureUse};
+use crate::scene::{AlphaTexture, LoadCx, Reason, Scene};
 use crate::task::Charge;
 
 pub(super) struct Materials<'a> {
@@ -13,16 +18,20 @@ pub(super) struct Materials<'a> {
     cx: &'a LoadCx,
     /// Libraries that were looked for.
     tried: HashSet<String>,
-    found: Vec<Material>,
+    found: Vec<Draft>,
     by_name: HashMap<String, usize>,
+    images: Vec<Image>,
+    /// Where each image is in the list; `None` for one that may not be read.
+    by_file: HashMap<String, Option<usize>>,
     missing_libraries: Missing,
     missing_materials: Missing,
+    forbidden_images: Missing,
     memory: Charge,
 }
 
 /// What a byte of text may become: "newmtl a" takes nine, a material and its name in the table
-/// not much over a hundred.
-const SPREAD: u64 = 16;
+/// not much over two hundred.
+const SPREAD: u64 = 32;
 
 /// Names that were not found: how many, and the first few.
 #[derive(Default)]
@@ -35,8 +44,19 @@ struct Missing {
 impl<'a> Materials<'a> {
     pub fn new(files: &'a dyn Siblings, cx: &'a LoadCx) -> Result<Self, Reason> {
         let memory = cx.budget.charge(0)?;
-        let (tried, found, by_name, missing_libraries, missing_materials) = Default::default();
-        Ok(Self { files, cx, tried, found, by_name, missing_libraries, missing_materials, memory })
+        Ok(Self {
+            files,
+            cx,
+            tried: HashSet::new(),
+            found: Vec::new(),
+            by_name: HashMap::new(),
+            images: Vec::new(),
+            by_file: HashMap::new(),
+            missing_libraries: Missing::default(),
+            missing_materials: Missing::default(),
+            forbidden_images: Missing::default(),
+            memory,
+        })
     }
 
     /// `mtllib`: one name with blanks in it, or several names; both are written.
@@ -69,19 +89,59 @@ impl<'a> Materials<'a> {
             Err(_) => return Ok(false),
         };
         self.memory.grow(bytes.len() as u64 * SPREAD)?;
-        let mut opacity_said = false;
+        // Images are named from where the library is.
+        let folder = &name[..name.rfind(['/', '\\']).map_or(0, |slash| slash + 1)];
+        let before = self.found.len();
         each_statement(&bytes, self.cx, |word, line| {
             if word == b"newmtl" {
-                opacity_said = false;
                 let name = lossy(line.tail());
                 self.by_name.insert(name.clone(), self.found.len());
-                self.found.push(Material { name, ..Material::default() });
-            } else if let Some(material) = self.found.last_mut() {
-                set(material, word, &line, &mut opacity_said);
+                self.found.push(Draft::new(name));
+            } else if self.found.len() == before {
+                // Of no material.
+            } else if word.eq_ignore_ascii_case(b"map_Kd") || word.eq_ignore_ascii_case(b"map_d") {
+                self.map(word, line.tail(), folder)?;
+            } else if let Some(draft) = self.found.last_mut() {
+                draft.set(word, &line);
             }
             Ok(())
         })?;
         Ok(true)
+    }
+
+    /// A statement that names an image, of the last material.
+    fn map(&mut self, word: &[u8], tail: &[u8], folder: &str) -> Result<(), Reason> {
+        let Some(Map { file, sampler, transform, channel }) = maps::parse(tail) else { return Ok(()) };
+        let Some(image) = self.image(file, folder)? else { return Ok(()) };
+        let texture = TextureUse { image, sampler, transform };
+        let Some(Draft { material, .. }) = self.found.last_mut() else { return Ok(()) };
+        if word.eq_ignore_ascii_case(b"map_Kd") {
+            material.base_color_texture = Some(texture);
+        } else {
+            material.alpha_texture = Some(AlphaTexture { texture, channel: channel.unwrap_or(Channel::Mask) });
+        }
+        Ok(())
+    }
+
+    /// The index of an image, which is noted and not read.
+    fn image(&mut self, file: String, folder: &str) -> Result<Option<usize>, Reason> {
+        let name = format!("{folder}{file}");
+        if let Some(known) = self.by_file.get(&name) {
+            return Ok(*known);
+        }
+        // Both have to be relative: a folder in front must not hide an absolute name.
+        let path: Option<PathBuf> = self.files.locate(&file).and_then(|_| self.files.locate(&name)).ok();
+        let length = path.as_ref().map_or(0, |path| path.as_os_str().len()) + 4 * name.len();
+        self.memory.grow((length + size_of::<(Image, String, usize)>()) as u64)?;
+        let known = if let Some(path) = path {
+            self.images.push(Image { name: file, source: ImageSource::File(path) });
+            Some(self.images.len() - 1)
+        } else {
+            self.forbidden_images.add(file);
+            None
+        };
+        self.by_file.insert(name, known);
+        Ok(known)
     }
 
     /// The material that the file calls `name`.
@@ -94,37 +154,17 @@ impl<'a> Materials<'a> {
         found
     }
 
-    /// The materials, and what was not found.
-    pub fn finish(self) -> (Vec<Material>, Vec<String>) {
+    /// Gives the scene its materials and images, and says what was not found.
+    pub fn finish(self, scene: &mut Scene) {
         let warnings = [
             self.missing_libraries.sentence("material file", "could not be read"),
+            self.forbidden_images.sentence("image", "could not be read, as only those beside the model are"),
             // Without its library every material is missing, which need not be said again.
             self.missing_materials.sentence("material", "is in none of the material files").filter(|_| !self.found.is_empty()),
         ];
-        (self.found, warnings.into_iter().flatten().collect())
-    }
-}
-
-/// Takes a statement for the material that it is about.
-fn set(material: &mut Material, word: &[u8], line: &Line, opacity_said: &mut bool) {
-    let number = |i: usize| values(line).nth(i).and_then(float).filter(|x| x.is_finite());
-    let [r, g, b, a] = &mut material.base_color;
-    match word {
-        b"Kd" => {
-            if let Some(red) = number(0) {
-                // One number stands for three.
-                (*r, *g, *b) = (red, number(1).unwrap_or(red), number(2).unwrap_or(red));
-            }
-        }
-        b"d" => {
-            // `-halo` may come before the number.
-            if let Some(opacity) = values(line).last().and_then(float) {
-                (*a, *opacity_said) = (unit(opacity), true);
-            }
-        }
-        // Where both stand, `d` is the one of the format.
-        b"Tr" if !*opacity_said => *a = number(0).map_or(*a, |t| 1.0 - unit(t)),
-        _ => {}
+        scene.warnings.extend(warnings.into_iter().flatten());
+        scene.materials = self.found.into_iter().map(Draft::finish).collect();
+        scene.images = self.images;
     }
 }
 

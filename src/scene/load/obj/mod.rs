@@ -9,6 +9,8 @@
 //! before its vertices, and a `usemtl` before its `mtllib`.
 
 mod faces;
+mod maps;
+mod material;
 mod materials;
 mod meshes;
 mod vertices;
@@ -45,9 +47,7 @@ impl Loader for Obj {
         let mut faces = faces::Faces::new(&vertices, &mut materials, cx)?;
         each_statement(bytes, cx, |word, line| faces.statement(word, &line))?;
         let mut scene = Scene { up: Vec3::Y, ..faces.finish()? };
-        let (materials, warnings) = materials.finish();
-        scene.materials = materials;
-        scene.warnings.extend(warnings);
+        materials.finish(&mut scene);
         Ok(scene)
     }
 }

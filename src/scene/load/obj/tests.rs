@@ -1,3 +1,5 @@
+mod textures;
+
 use super::super::tests::{Beside, check, load, soup};
 use super::*;
 

@@ -1,0 +1,66 @@
+//! One material of an MTL file, as it is put together statement by statement.
+
+use super::values;
+use crate::scene::load::text::{Line, float};
+use crate::scene::load::unit;
+use crate::scene::texture::Channel;
+use crate::scene::{Alpha, AlphaTexture, Material};
+
+/// A material whose statements are being read.
+pub(super) struct Draft {
+    pub material: Material,
+    color_said: bool,
+    opacity_said: bool,
+}
+
+impl Draft {
+    pub fn new(name: String) -> Self {
+        Self { material: Material { name, ..Material::PLAIN }, color_said: false, opacity_said: false }
+    }
+
+    /// Takes a statement that names no image.
+    pub fn set(&mut self, word: &[u8], line: &Line) {
+        let number = |i: usize| values(line).nth(i).and_then(float).filter(|x| x.is_finite());
+        let [r, g, b, a] = &mut self.material.base_color;
+        match word {
+            b"Kd" => {
+                if let Some(red) = number(0) {
+                    // One number stands for three.
+                    (*r, *g, *b) = (red, number(1).unwrap_or(red), number(2).unwrap_or(red));
+                    self.color_said = true;
+                }
+            }
+            b"d" => {
+                // `-halo` may come before the number.
+                if let Some(opacity) = values(line).last().and_then(float) {
+                    (*a, self.opacity_said) = (unit(opacity), true);
+                }
+            }
+            // Where both stand, `d` is the one of the format.
+            b"Tr" if !self.opacity_said => *a = number(0).map_or(*a, |t| 1.0 - unit(t)),
+            _ => {}
+        }
+    }
+
+    /// The material, once all that is said of it is known.
+    pub fn finish(self) -> Material {
+        let Self { mut material, color_said, .. } = self;
+        let [r, g, b, a] = &mut material.base_color;
+        // `map_Kd` is multiplied by `Kd`. Black is written by programs that mean the image alone,
+        // and would make it pointless.
+        if material.base_color_texture.is_some() && (!color_said || [*r, *g, *b] == [0.0; 3]) {
+            (*r, *g, *b) = (1.0, 1.0, 1.0);
+        }
+        // Of an image that gives the colour too, only the alpha channel can be meant.
+        if let (Some(color), Some(AlphaTexture { texture, channel: channel @ Channel::Mask })) =
+            (&material.base_color_texture, &mut material.alpha_texture)
+            && color.image == texture.image
+        {
+            *channel = Channel::Alpha;
+        }
+        if *a < 1.0 || material.alpha_texture.is_some() {
+            material.alpha = Alpha::Blend;
+        }
+        material
+    }
+}
