@@ -5,6 +5,7 @@
 pub mod builtin;
 mod camera;
 mod camera_spec;
+pub mod coverage;
 mod error;
 mod extremes;
 mod first_view;
