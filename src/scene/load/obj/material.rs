@@ -58,6 +58,10 @@ impl Draft {
         {
             *channel = Channel::Alpha;
         }
+        // Nobody writes a surface that is nowhere: some programs take 1 for opaque in `Tr`, or 0 in `d`.
+        if *a == 0.0 {
+            *a = 1.0;
+        }
         if *a < 1.0 || material.alpha_texture.is_some() {
             material.alpha = Alpha::Blend;
         }

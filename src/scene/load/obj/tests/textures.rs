@@ -70,6 +70,7 @@ fn opacity_blends() {
     assert_eq!(alpha("Kd 1 1 1"), (Alpha::Opaque, None, 1.0));
     assert_eq!(alpha("d 0.5"), (Alpha::Blend, None, 0.5));
     assert_eq!(alpha("Tr 0.25"), (Alpha::Blend, None, 0.75));
+    assert_eq!(alpha("Tr 1"), (Alpha::Opaque, None, 1.0), "as MeshLab writes it");
     assert_eq!(alpha("d 1\nTr 1"), (Alpha::Opaque, None, 1.0));
     assert_eq!(alpha("d 0.5\nmap_Kd leaf.png"), (Alpha::Blend, None, 0.5), "its alpha is not meant");
     assert_eq!(alpha("map_d leaf.png\nmap_Kd leaf.png"), (Alpha::Blend, Some(Channel::Alpha), 1.0));
