@@ -31,11 +31,12 @@ impl Images<'_, '_> {
             let index = match taken.get(&texture.image) {
                 _ if !shown => None,
                 Some(known) => *known,
-                None => self.add(texture.image, scene, &mut memory)?,
+                None => {
+                    let new = self.add(texture.image, scene, &mut memory)?;
+                    taken.insert(texture.image, new);
+                    new
+                }
             };
-            if shown {
-                taken.insert(texture.image, index);
-            }
             let material = &mut scene.materials[m];
             let alpha = material.alpha_texture;
             material.base_color_texture = index.map(|image| TextureUse { image, ..texture });
