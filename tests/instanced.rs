@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use boxwood::accel::cell::{Descend, bounds_in_scene, walk};
 use boxwood::accel::probe::Counts;
-use boxwood::accel::{Hit, Mode, Step, cell, registry};
+use boxwood::accel::{Filter, Hit, Mode, Step, cell, registry};
 use boxwood::geometry::tri::TestKind;
 use boxwood::geometry::{Aabb, Ray};
 use boxwood::scene::{Geometry, Instance, LoadCx, Mesh, Scene};
@@ -232,6 +232,42 @@ fn a_mesh_in_one_place_has_no_upper_level() {
     let geometry = two_levels(&scene);
     assert!(geometry.placed().is_none());
     assert!(build(&registry::ALL[2], &geometry, TestKind::Fast).levels().is_none());
+}
+
+/// Every other triangle of every other instance.
+struct Halved;
+
+impl Filter for Halved {
+    fn accepts(&self, hit: &Hit) -> bool {
+        (hit.instance + hit.primitive).is_multiple_of(2)
+    }
+}
+
+#[test]
+fn a_filter_leaves_out_the_same_hits_in_every_structure() {
+    let scene = scene();
+    let rays = rays_for(&flattened(&scene), 600, 29);
+    let flat = Arc::new(Geometry::new(&scene, &LoadCx::unattended()).expect("small"));
+    for geometry in [two_levels(&scene), flat] {
+        let sifted = |entry: &registry::Entry, mode| {
+            let (accel, mut hits) = (build(entry, &geometry, TestKind::Watertight), vec![None; rays.len()]);
+            accel.trace_filtered(&rays, mode, &Halved, &mut hits, &Cancel::new()).expect("not cancelled");
+            hits
+        };
+        let expected = sifted(&registry::ALL[0], Mode::Closest);
+        let all = trace(build(&registry::ALL[0], &geometry, TestKind::Watertight).as_ref(), &rays, Mode::Closest);
+        let changed = all.iter().zip(&expected).filter(|(a, b)| a != b).count();
+        assert!(changed > 50 && expected.iter().flatten().all(|hit| Halved.accepts(hit)), "{changed}");
+        for entry in registry::ALL {
+            let (closest, any) = (sifted(entry, Mode::Closest), sifted(entry, Mode::Any));
+            for (i, ray) in rays.iter().enumerate() {
+                let same = closest[i] == expected[i] || near(&geometry, ray, &closest[i], &expected[i]);
+                assert!(same, "{}: {:?}, brute {:?}", entry.id, closest[i], expected[i]);
+                let some = any[i].is_some() == expected[i].is_some() || near(&geometry, ray, &any[i], &expected[i]);
+                assert!(some && any[i].is_none_or(|hit| Halved.accepts(&hit)), "{}: {ray:?}", entry.id);
+            }
+        }
+    }
 }
 
 #[test]

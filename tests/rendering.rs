@@ -18,7 +18,7 @@ fn job(triangles: &[[Vec3; 3]], id: &str, mode: Mode) -> Job {
     let geometry = geometry_of(&scene);
     let accel: Arc<dyn Accel> = Arc::from(build(registry::find(id).expect("registered"), &geometry, TestKind::Watertight));
     let camera = Camera::framing(geometry.world_bounds(), Vec3::new(1.0, 0.7, 2.0), Vec3::Y, 1.5);
-    Job { scene: Arc::new(scene), accel, camera, mode }
+    Job { scene: Arc::new(scene), accel, camera, mode, looks: Arc::default() }
 }
 
 fn film(job: &Job, threads: usize) -> Film {

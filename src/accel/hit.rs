@@ -81,6 +81,35 @@ impl Query for AnyHit {
     }
 }
 
+/// Says which hits count: the alpha test of a scene, say.
+pub trait Filter: Sync {
+    /// Whether this one does. Its t says nothing.
+    fn accepts(&self, hit: &Hit) -> bool;
+}
+
+/// The same inside a structure.
+pub type Accepts<'a> = &'a (dyn Fn(&PrimHit) -> bool + Sync);
+
+/// The closest hit of those that count, or any of them.
+#[derive(Clone, Copy)]
+pub struct Filtered<'a> {
+    /// Which.
+    pub mode: Mode,
+    /// Those that count.
+    pub accepts: Accepts<'a>,
+}
+
+impl Query for Filtered<'_> {
+    #[inline(always)]
+    fn any(&self) -> bool {
+        self.mode == Mode::Any
+    }
+
+    fn accept(&self, hit: &PrimHit) -> bool {
+        (self.accepts)(hit)
+    }
+}
+
 /// A question that is settled when it is asked, for rays that are watched and not timed: they all
 /// share one loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -28,7 +28,7 @@ mod wide;
 
 pub use build::{BuildCx, BuildError};
 pub use cell::{Cell, CellId, CellKind, Cells, Level, MemoryPart, Shape, Split};
-pub use hit::{AnyHit, Asked, Closest, Hit, Mode, PrimHit, Query};
+pub use hit::{Accepts, AnyHit, Asked, Closest, Filter, Filtered, Hit, Mode, PrimHit, Query};
 pub use instanced::Instanced;
 pub use probe::{Prune, Step};
 
@@ -122,7 +122,27 @@ pub trait Accel: Cells {
     /// [`Cancelled`], within 100 ms of the request; some hits are then not written.
     fn trace(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<Traced, Cancelled>;
 
-    /// The same hits, found one ray at a time and without instructions that not every processor has.
+    /// The same where only those hits count that a filter accepts: one ray at a time.
+    ///
+    /// # Errors
+    /// As [`Self::trace`].
+    fn trace_filtered(
+        &self,
+        rays: &[Ray],
+        mode: Mode,
+        filter: &dyn Filter,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        let geometry = self.geometry();
+        let accepts = |hit: &PrimHit| {
+            let (instance, primitive) = geometry.locate(hit.prim);
+            filter.accepts(&Hit { t: hit.t, u: hit.u, v: hit.v, instance, primitive })
+        };
+        one_by_one(geometry, rays, hits, |ray| self.trace_scaled_filtered(ray, mode, &accepts, cancel))
+    }
+
+    /// The same hits as those of [`Self::trace`], found one ray at a time and without instructions that not every processor has.
     ///
     /// # Errors
     /// As [`Self::trace`].
@@ -170,7 +190,19 @@ pub trait Accel: Cells {
     /// As [`Self::trace`].
     fn trace_scaled(&self, ray: &Ray, mode: Mode, off: Off, cancel: &Cancel) -> Result<Option<PrimHit>, Cancelled>;
 
-    /// The same, watched.
+    /// The same where only some hits count.
+    ///
+    /// # Errors
+    /// As [`Self::trace`].
+    fn trace_scaled_filtered(
+        &self,
+        ray: &Ray,
+        mode: Mode,
+        accepts: Accepts<'_>,
+        cancel: &Cancel,
+    ) -> Result<Option<PrimHit>, Cancelled>;
+
+    /// The same as [`Self::trace_scaled`], watched.
     ///
     /// # Errors
     /// As [`Self::trace_heard`].
@@ -225,6 +257,16 @@ impl<S: Structure> Accel for S {
             Mode::Closest => self.trace_alone(ray, &Closest, off, cancel),
             Mode::Any => self.trace_alone(ray, &AnyHit, off, cancel),
         }
+    }
+
+    fn trace_scaled_filtered(
+        &self,
+        ray: &Ray,
+        mode: Mode,
+        accepts: Accepts<'_>,
+        cancel: &Cancel,
+    ) -> Result<Option<PrimHit>, Cancelled> {
+        self.trace_alone(ray, &Filtered { mode, accepts }, Off::best(), cancel)
     }
 
     fn trace_scaled_heard(

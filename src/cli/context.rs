@@ -10,6 +10,7 @@ use crate::accel::registry::Entry;
 use crate::accel::{BuildCx, BuildError};
 use crate::geometry::tri::TestKind;
 use crate::lab::{BuiltRow, MachineFacts, SceneFacts, build_timed};
+use crate::render::Looks;
 use crate::scene::{self, Geometry, LoadCx, Reason, Scene};
 use crate::task::{Budget, Cancel, Pool, Progress};
 
@@ -54,6 +55,14 @@ impl Context {
             super::output::warn(&format!("{model}: {warning}"));
         }
         Ok(opened)
+    }
+
+    /// Decodes the textures of a model; what cannot be read is told on standard error.
+    pub fn looks(&self, model: &Model) -> Result<Looks, Failure> {
+        let cx = self.load_cx();
+        let looks = bar::watch("textures", &cx.progress, || Looks::decode(&model.scene, &cx))?;
+        looks.textures().warnings().iter().for_each(|warning| super::output::warn(&format!("{}: {warning}", model.scene.name)));
+        Ok(looks)
     }
 
     /// What loading and making scenes takes.

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use image::ImageEncoder;
 
@@ -13,7 +14,7 @@ use super::output::{OutFile, print};
 use super::structures::{BuildArgs, One};
 use super::table::facts;
 use crate::lab::format::{duration, number, rate};
-use crate::render::{self, Job, Mode, Still, auto_range};
+use crate::render::{self, Job, Looks, Mode, Still, auto_range};
 use crate::scene::CameraSpec;
 use crate::task::{Cancel, Progress};
 
@@ -60,7 +61,8 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let built = cx.build(entry, &model, args.build.test, &params)?;
 
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
-    let job = Job { scene: model.scene, accel: built.accel, camera, mode: args.mode };
+    let looks = if args.mode.shows_looks() { cx.looks(&model)? } else { Looks::default() };
+    let job = Job { scene: model.scene, accel: built.accel, camera, mode: args.mode, looks: Arc::new(looks) };
     let (width, height) = (args.size.width, args.size.height);
     let progress = Progress::new();
     let still =

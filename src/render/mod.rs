@@ -4,6 +4,7 @@
 pub mod colormap;
 mod develop;
 mod film;
+mod looks;
 mod mode;
 mod picture;
 pub mod progressive;
@@ -16,6 +17,7 @@ mod tile;
 
 pub use develop::{Development, Range, auto_range};
 pub use film::Film;
+pub use looks::Looks;
 pub use mode::Mode;
 pub use picture::{Picture, Progress};
 pub use progressive::{Renderer, Request};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::film::Band;
 use super::sampler::{Sampler, in_pixel, on_screen};
 use super::shade::{occlusion_ray, shade};
-use super::{Film, Mode};
+use super::{Film, Looks, Mode};
 use crate::accel::probe::Counts;
 use crate::accel::{self, Accel, Hit};
 use crate::geometry::Ray;
@@ -26,6 +26,8 @@ pub struct Job {
     pub camera: Camera,
     /// What is shown.
     pub mode: Mode,
+    /// Textures, and where surfaces let rays pass.
+    pub looks: Arc<Looks>,
 }
 
 impl std::fmt::Debug for Job {
@@ -84,10 +86,10 @@ impl Job {
         if self.mode.is_heat() {
             self.watch(&rays, &mut hits, &mut samples, cancel)?;
         } else {
-            self.accel.trace(&rays, accel::Mode::Closest, &mut hits, cancel)?;
+            self.trace(&rays, accel::Mode::Closest, &mut hits, cancel)?;
             for ((ray, hit), sample) in rays.iter().zip(&hits).zip(&mut samples) {
                 if let Some(hit) = hit {
-                    *sample = shade(self.mode, &self.scene, self.accel.geometry(), ray, hit);
+                    *sample = shade(self, ray, hit);
                 }
             }
         }
@@ -108,7 +110,11 @@ impl Job {
         Ok(traced)
     }
 
-    /// Traces and counts, one ray at a time.
+    fn trace(&self, rays: &[Ray], mode: accel::Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<(), Cancelled> {
+        self.looks.trace(&self.scene, self.accel.as_ref(), rays, mode, hits, cancel).map(|_| ())
+    }
+
+    /// Traces and counts, one ray at a time. What a structure does is shown as if all surfaces were solid.
     fn watch(&self, rays: &[Ray], hits: &mut [Option<Hit>], samples: &mut [[f32; 4]], cancel: &Cancel) -> Result<(), Cancelled> {
         for ((ray, hit), sample) in rays.iter().zip(hits).zip(samples) {
             let mut counts = Counts::default();
@@ -133,7 +139,7 @@ impl Job {
         let open = |(i, hit): (usize, &Option<Hit>)| hit.map(|hit| (i, occlusion_ray(geometry, &rays[i], &hit, &sampler(i))));
         let (at, probes): (Vec<usize>, Vec<Ray>) = hits.iter().enumerate().filter_map(open).unzip();
         let mut blocked = vec![None; probes.len()];
-        self.accel.trace(&probes, accel::Mode::Any, &mut blocked, cancel)?;
+        self.trace(&probes, accel::Mode::Any, &mut blocked, cancel)?;
         for (i, _) in at.iter().zip(&blocked).filter(|(_, blocked)| blocked.is_some()) {
             samples[*i][..3].fill(0.0);
         }

@@ -7,6 +7,8 @@ use super::checks::{RAYS, SEED};
 use super::gpu::RasterMesh;
 use crate::geometry::{Aabb, Ray};
 use crate::lab::stability::cases;
+use crate::render::Looks;
+use crate::scene::texture::Textures;
 use crate::scene::{self, Geometry, LoadCx, LoadError, Reason, Scene};
 use crate::task::{Budget, Cancel, Pool, Progress};
 
@@ -21,6 +23,8 @@ pub struct Model {
     pub raster: Arc<RasterMesh>,
     /// Seconds it took to load and flatten.
     pub load_secs: f64,
+    /// Its textures, as far as they are there.
+    pub looks: Arc<Looks>,
     /// The rays of a case of the stability lab; none of anything else.
     pub rays: Arc<Vec<Ray>>,
 }
@@ -68,7 +72,8 @@ pub fn load(
     let geometry = Geometry::with_instances(&scene, &cx).map_err(|reason| reason.of(model))?;
     let geometry = Arc::new(geometry);
     let raster = Arc::new(RasterMesh::new(generation, Arc::clone(&geometry)));
-    Ok(Model { scene: Arc::new(scene), geometry, raster, load_secs: start.elapsed().as_secs_f64(), rays: Arc::new(rays) })
+    let looks = Arc::new(Looks::new(&scene, Textures::none()));
+    Ok(Model { scene: Arc::new(scene), geometry, looks, raster, load_secs: start.elapsed().as_secs_f64(), rays: Arc::new(rays) })
 }
 
 impl Model {

@@ -20,8 +20,8 @@ use crate::lab::{
     self, CheckError, Checked, Contestant, Costs, Enough, FitOptions, MeasureOptions, ModelCheck, Quality, QualityOptions,
     RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure, measure_with_raster, sah_curves,
 };
-use crate::render;
-use crate::scene::{Camera, Geometry, LoadError, Scene};
+use crate::render::{self, Looks};
+use crate::scene::{Camera, Geometry, LoadCx, LoadError, Scene};
 use crate::task::{Budget, Cancelled, Pool, Progress};
 
 /// What every job needs: threads, memory, and a way to wake the window.
@@ -98,6 +98,18 @@ pub fn count(shared: &Shared, built: &Built) -> std::io::Result<Counting> {
         Ok((stats, quality))
     })?;
     Ok((built.key.clone(), job))
+}
+
+/// Textures on their way.
+pub type Decoding = Job<Result<Looks, Cancelled>>;
+
+/// Starts decoding the textures of a scene.
+pub fn decode(shared: &Shared, scene: Arc<Scene>) -> std::io::Result<Decoding> {
+    let Shared { pool, budget, .. } = shared.clone();
+    Job::spawn("textures", shared.waker(), move |cancel, progress| {
+        let cx = LoadCx { cancel: cancel.clone(), progress: progress.clone(), budget, pool };
+        Looks::decode(&scene, &cx)
+    })
 }
 
 /// An overlay on its way.

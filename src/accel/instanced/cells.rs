@@ -27,9 +27,7 @@ impl Instanced {
 
     /// The structure whose cells have this instance.
     fn accel_below(&self, instance: u32) -> Option<&dyn Accel> {
-        match self.below(instance.checked_sub(1)?)? {
-            Below::Part(_, accel) | Below::Rest(accel) => Some(accel),
-        }
+        Some(self.below(instance.checked_sub(1)?)?.accel())
     }
 }
 

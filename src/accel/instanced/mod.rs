@@ -54,6 +54,14 @@ enum Below<'a> {
     Rest(&'a dyn Accel),
 }
 
+impl<'a> Below<'a> {
+    const fn accel(self) -> &'a dyn Accel {
+        match self {
+            Self::Part(_, accel) | Self::Rest(accel) => accel,
+        }
+    }
+}
+
 impl Instanced {
     /// Builds the lower structures, each once, and the upper level.
     ///

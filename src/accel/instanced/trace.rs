@@ -6,7 +6,7 @@
 
 use super::{Below, Instanced};
 use crate::accel::bvh::{MAX_DEPTH, Node};
-use crate::accel::hit::{Asked, Hit, Mode, PrimHit};
+use crate::accel::hit::{Accepts, Asked, Filter, Hit, Mode, PrimHit};
 use crate::accel::probe::{Counts, Off, Probe, Prune, Watched};
 use crate::accel::{Accel, Traced};
 use crate::geometry::{Ray, Slabs};
@@ -19,7 +19,7 @@ type Answer = Result<Option<PrimHit>, Cancelled>;
 
 /// Asks the structure of an entry: the second ray may be asked in another mode than the first.
 trait Ask<P> {
-    fn ask(&self, below: &dyn Accel, ray: &Ray, mode: Mode, probe: &mut P) -> Answer;
+    fn ask(&self, below: Below<'_>, ray: &Ray, mode: Mode, probe: &mut P) -> Answer;
 }
 
 /// The closest hit so far, in the scene's scaled space.
@@ -109,9 +109,9 @@ impl<P: Probe, A: Ask<P>> Walk<'_, P, A> {
         let Some(below) = self.of.below(number) else { return Ok(false) };
         self.probe.level(number + 1);
         match below {
-            Below::Rest(accel) => {
+            Below::Rest(_) => {
                 let ray = Ray { tmax: self.nearest.t, ..*self.ray };
-                if let Some(hit) = self.asker.ask(accel, &ray, self.mode, self.probe)? {
+                if let Some(hit) = self.asker.ask(below, &ray, self.mode, self.probe)? {
                     let (instance, primitive) = self.of.geometry.locate(hit.prim);
                     self.nearest.offer(Hit { t: hit.t, u: hit.u, v: hit.v, instance, primitive });
                 }
@@ -126,10 +126,10 @@ impl<P: Probe, A: Ask<P>> Walk<'_, P, A> {
                     let t = entered.back.world_t(hit.t).max(ray.tmin);
                     Hit { t, u: hit.u, v: hit.v, instance: place.instance, primitive: hit.prim }
                 };
-                let mut hit = self.asker.ask(accel, &entered.ray, self.mode, self.probe)?.map(in_scene);
+                let mut hit = self.asker.ask(below, &entered.ray, self.mode, self.probe)?.map(in_scene);
                 // The interval was widened by a rounding: what was found there may hide what is in the ray's own.
                 if self.mode == Mode::Any && hit.is_some_and(|hit| hit.t > ray.tmax) {
-                    hit = self.asker.ask(accel, &entered.ray, Mode::Closest, self.probe)?.map(in_scene);
+                    hit = self.asker.ask(below, &entered.ray, Mode::Closest, self.probe)?.map(in_scene);
                 }
                 hit.into_iter().for_each(|hit| self.nearest.offer(hit));
             }
@@ -146,8 +146,28 @@ struct Fast<'a> {
 }
 
 impl Ask<Off> for Fast<'_> {
-    fn ask(&self, below: &dyn Accel, ray: &Ray, mode: Mode, _: &mut Off) -> Answer {
-        below.trace_scaled(ray, mode, self.off, self.cancel)
+    fn ask(&self, below: Below<'_>, ray: &Ray, mode: Mode, _: &mut Off) -> Answer {
+        below.accel().trace_scaled(ray, mode, self.off, self.cancel)
+    }
+}
+
+/// Only some hits count.
+struct Sifted<'a> {
+    geometry: &'a Geometry,
+    filter: &'a dyn Filter,
+    cancel: &'a Cancel,
+}
+
+impl Ask<Off> for Sifted<'_> {
+    fn ask(&self, below: Below<'_>, ray: &Ray, mode: Mode, _: &mut Off) -> Answer {
+        let accepts = |hit: &PrimHit| {
+            let (instance, primitive) = match below {
+                Below::Part(place, _) => (place.instance, hit.prim),
+                Below::Rest(_) => self.geometry.locate(hit.prim),
+            };
+            self.filter.accepts(&Hit { t: hit.t, u: hit.u, v: hit.v, instance, primitive })
+        };
+        below.accel().trace_scaled_filtered(ray, mode, &accepts, self.cancel)
     }
 }
 
@@ -159,9 +179,9 @@ struct Heard<'a> {
 }
 
 impl Ask<Watched<'_>> for Heard<'_> {
-    fn ask(&self, below: &dyn Accel, ray: &Ray, mode: Mode, watched: &mut Watched<'_>) -> Answer {
+    fn ask(&self, below: Below<'_>, ray: &Ray, mode: Mode, watched: &mut Watched<'_>) -> Answer {
         let asked = if self.hits { Asked::Mode(mode) } else { Asked::Nothing };
-        below.trace_scaled_heard(ray, asked, watched, self.cancel)
+        below.accel().trace_scaled_heard(ray, asked, watched, self.cancel)
     }
 }
 
@@ -189,11 +209,18 @@ impl Instanced {
         Ok(trace(&entered.ray)?.map(|hit| Hit { t: entered.back.world_t(hit.t), ..hit }))
     }
 
-    fn batch(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], fast: &Fast<'_>) -> Result<Traced, Cancelled> {
-        let (mut traced, mut off) = (Traced::default(), fast.off);
+    fn batch<A: Ask<Off>>(
+        &self,
+        rays: &[Ray],
+        mode: Mode,
+        hits: &mut [Option<Hit>],
+        asker: &A,
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        let (mut traced, mut off) = (Traced::default(), Off::plain());
         for (ray, hit) in rays.iter().zip(hits) {
-            fast.cancel.check()?;
-            *hit = self.in_world(ray, &mut traced, |ray| self.walk(ray, mode, fast, &mut off))?;
+            cancel.check()?;
+            *hit = self.in_world(ray, &mut traced, |ray| self.walk(ray, mode, asker, &mut off))?;
         }
         Ok(traced)
     }
@@ -205,7 +232,18 @@ impl Accel for Instanced {
     }
 
     fn trace(&self, rays: &[Ray], mode: Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<Traced, Cancelled> {
-        self.batch(rays, mode, hits, &Fast { off: Off::best(), cancel })
+        self.batch(rays, mode, hits, &Fast { off: Off::best(), cancel }, cancel)
+    }
+
+    fn trace_filtered(
+        &self,
+        rays: &[Ray],
+        mode: Mode,
+        filter: &dyn Filter,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        self.batch(rays, mode, hits, &Sifted { geometry: &self.geometry, filter, cancel }, cancel)
     }
 
     fn trace_like_for_like(
@@ -215,7 +253,7 @@ impl Accel for Instanced {
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        self.batch(rays, mode, hits, &Fast { off: Off::plain(), cancel })
+        self.batch(rays, mode, hits, &Fast { off: Off::plain(), cancel }, cancel)
     }
 
     fn trace_heard(&self, ray: &Ray, mode: Mode, watched: &mut Watched<'_>, cancel: &Cancel) -> Result<Option<Hit>, Cancelled> {
@@ -230,6 +268,10 @@ impl Accel for Instanced {
     }
 
     fn trace_scaled(&self, _: &Ray, _: Mode, _: Off, _: &Cancel) -> Result<Option<PrimHit>, Cancelled> {
+        Ok(None)
+    }
+
+    fn trace_scaled_filtered(&self, _: &Ray, _: Mode, _: Accepts<'_>, _: &Cancel) -> Result<Option<PrimHit>, Cancelled> {
         Ok(None)
     }
 

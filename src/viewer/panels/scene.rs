@@ -49,7 +49,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         format::duration(model.load_secs),
         "Seconds from the click to the triangles: reading, parsing, placing.",
     );
-    warnings(ui, &scene.warnings);
+    let textures = model.looks.textures();
+    if textures.bytes() > 0 {
+        fact(ui, "Textures", format::bytes(textures.bytes()), "Images as they are kept in memory: only those that are seen.");
+    }
+    let all: Vec<String> = scene.warnings.iter().chain(textures.warnings()).cloned().collect();
+    warnings(ui, &all);
 }
 
 fn left_out(ui: &mut Ui, name: &str, count: u64, help: &str) {

@@ -44,6 +44,7 @@ impl State {
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
         (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
         self.picking = None;
+        (self.decoding, self.textures_are_there) = (None, false);
         self.select(None);
         (self.seen, self.counted) = (None, None);
         (self.cameras, self.choices) = (History::default(), History::default());
@@ -110,6 +111,30 @@ impl State {
         if wanted && self.seen.as_ref() == Some(&shown.key) && self.measuring.is_none() {
             self.counted = Some(shown.key.clone());
             self.counting = workers::count(&self.shared, shown).ok();
+        }
+    }
+
+    /// Decodes the scene's images once its first picture is on the screen.
+    pub(super) fn advance_textures(&mut self) {
+        match self.decoding.take() {
+            Some(job) => match job.poll() {
+                Outcome::Running => self.decoding = Some(job),
+                Outcome::Done(Ok(looks)) => {
+                    if let Some(model) = &mut self.model {
+                        model.looks = Arc::new(looks);
+                    }
+                    self.textures_are_there = true;
+                }
+                Outcome::Done(Err(_)) | Outcome::Died => self.textures_are_there = true,
+            },
+            None => {
+                if let (Some(model), false, true) = (&self.model, self.textures_are_there, self.seen.is_some())
+                    && !model.scene.images.is_empty()
+                    && self.measuring.is_none()
+                {
+                    self.decoding = workers::decode(&self.shared, Arc::clone(&model.scene)).ok();
+                }
+            }
         }
     }
 

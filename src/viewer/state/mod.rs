@@ -24,7 +24,7 @@ use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
 use super::settings::Settings;
 use super::timings::Timings;
-use super::workers::{self, Building, Collecting, Counting, Curving, Loading, Measuring, Picking, Plan, Shared};
+use super::workers::{self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Picking, Plan, Shared};
 use crate::accel::{CellId, cell};
 use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
@@ -97,6 +97,9 @@ pub struct State {
     /// The structure whose figures were asked for last.
     counted: Option<Key>,
     counting: Option<Counting>,
+    decoding: Option<Decoding>,
+    /// Whether decoding has come to its end.
+    textures_are_there: bool,
     collecting: Option<(Wanted, Key, Collecting)>,
     collected_for: Option<(Wanted, Key)>,
     /// The boxes are those of the present view, structure and settings.
@@ -127,6 +130,8 @@ struct Asked {
     range: Option<Range>,
     size_px: [u32; 2],
     max_samples: u32,
+    /// Whether the textures were there.
+    textured: bool,
 }
 
 /// How soon the first picture of a request was there.
@@ -181,6 +186,8 @@ impl State {
             seen: None,
             counted: None,
             counting: None,
+            decoding: None,
+            textures_are_there: false,
             collecting: None,
             collected_for: None,
             overlay_is_current: false,
@@ -431,6 +438,7 @@ impl State {
             accel: Arc::clone(&shown.accel),
             camera: self.camera,
             mode: Mode::Shaded,
+            looks: Arc::clone(&model.looks),
         };
         self.building = None;
         Some(Plan { kept, missing, view, size_px: self.size_px })
@@ -460,6 +468,7 @@ impl State {
         self.follow_viewport();
         self.refresh_picture();
         self.advance_statistics();
+        self.advance_textures();
         self.refresh_overlay();
     }
 

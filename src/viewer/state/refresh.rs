@@ -38,10 +38,11 @@ impl State {
             range: self.range,
             size_px: self.size_px,
             max_samples,
+            textured: self.textures_are_there,
         };
         if self.requested.as_ref() != Some(&asked) && width > 0 && height > 0 {
             let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-            let job = render::Job { scene, accel, camera: self.camera, mode };
+            let job = render::Job { scene, accel, camera: self.camera, mode, looks: Arc::clone(&model.looks) };
             let number = self.renderer.request(Request { job, width, height, max_samples, range: self.range });
             self.requested = Some(Asked { number, ..asked });
             self.requested_at = Instant::now();

@@ -1,0 +1,82 @@
+//! What surfaces look like besides their shape and plain colour: the scene's textures, and which meshes rays may pass in
+//! places. A scene that has neither pays for neither.
+
+use super::Mode;
+use crate::accel::{self, Accel, Filter, Hit, Traced};
+use crate::geometry::Ray;
+use crate::scene::coverage::{Surface, tested_meshes};
+use crate::scene::texture::Textures;
+use crate::scene::{LoadCx, Scene};
+use crate::task::{Cancel, Cancelled};
+
+/// The textures of a scene, as far as they are there.
+#[derive(Debug, Default)]
+pub struct Looks {
+    textures: Textures,
+    /// By mesh, whether hits on it need the alpha test; empty if none does.
+    tested: Vec<bool>,
+}
+
+impl Looks {
+    /// With textures that are there; without them ([`Textures::none`]) surfaces have their plain colour and opacity.
+    pub fn new(scene: &Scene, textures: Textures) -> Self {
+        let tested = tested_meshes(scene, &textures);
+        Self { textures, tested: if tested.contains(&true) { tested } else { Vec::new() } }
+    }
+
+    /// Decodes the scene's textures.
+    ///
+    /// # Errors
+    /// [`Cancelled`] within 100 ms of the request.
+    pub fn decode(scene: &Scene, cx: &LoadCx) -> Result<Self, Cancelled> {
+        Ok(Self::new(scene, Textures::decode(scene, cx)?))
+    }
+
+    /// The textures.
+    pub const fn textures(&self) -> &Textures {
+        &self.textures
+    }
+
+    /// Whether rays may pass some mesh in places.
+    pub fn has_holes(&self) -> bool {
+        !self.tested.is_empty()
+    }
+
+    /// Traces rays through a structure; where surfaces are not there hits do not count.
+    pub(super) fn trace(
+        &self,
+        scene: &Scene,
+        accel: &dyn Accel,
+        rays: &[Ray],
+        mode: accel::Mode,
+        hits: &mut [Option<Hit>],
+        cancel: &Cancel,
+    ) -> Result<Traced, Cancelled> {
+        if self.has_holes() {
+            accel.trace_filtered(rays, mode, &Holes { scene, looks: self }, hits, cancel)
+        } else {
+            accel.trace(rays, mode, hits, cancel)
+        }
+    }
+}
+
+/// Counts hits only where the surface is.
+struct Holes<'a> {
+    scene: &'a Scene,
+    looks: &'a Looks,
+}
+
+impl Filter for Holes<'_> {
+    fn accepts(&self, hit: &Hit) -> bool {
+        let mesh = self.scene.instances[hit.instance as usize].mesh;
+        !self.looks.tested[mesh]
+            || Surface::new(self.scene, mesh, &self.looks.textures).covers(hit.instance, hit.primitive, hit.u, hit.v)
+    }
+}
+
+impl Mode {
+    /// Whether it shows what surfaces look like.
+    pub const fn shows_looks(self) -> bool {
+        matches!(self, Self::Shaded | Self::Ao | Self::Normals | Self::Depth)
+    }
+}
