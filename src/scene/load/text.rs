@@ -2,9 +2,10 @@
 
 use super::pace::Pace;
 use super::{LoadCx, Reason};
+use crate::task::Cancelled;
 
 /// No sane line is longer; a file without line ends must not keep the cancel flag waiting.
-const MAX_LINE: usize = 1 << 20;
+pub(super) const MAX_LINE: usize = 1 << 20;
 
 /// The lines of a text, ended by `\n`, `\r\n` or `\r`, with progress and cancelling.
 pub(super) struct Lines<'a> {
@@ -24,8 +25,31 @@ pub(super) struct Line<'a> {
 impl<'a> Lines<'a> {
     /// The lines of `text`, of which the first is number `first`.
     pub fn new(text: &'a [u8], first: usize, cx: &'a LoadCx) -> Self {
-        let rest = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text); // a byte order mark
-        Self { rest, number: first - 1, pace: Pace::new(cx) }
+        Self::within(without_mark(text), first, cx)
+    }
+
+    /// The lines of a part of a text, which has no byte order mark.
+    pub fn within(part: &'a [u8], first: usize, cx: &'a LoadCx) -> Self {
+        Self { rest: part, number: first - 1, pace: Pace::new(cx) }
+    }
+
+    /// What is still to be read.
+    pub fn rest(&self) -> &'a [u8] {
+        self.rest
+    }
+
+    /// The number of the last line that was read.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// Passes over a line of `length` bytes with its end, shorter than [`MAX_LINE`], which the
+    /// caller has read in [`Self::rest`].
+    #[inline]
+    pub fn pass(&mut self, length: usize) -> Result<(), Cancelled> {
+        self.number += 1;
+        self.rest = &self.rest[length..];
+        self.pace.step(length)
     }
 
     /// The next line, or `None` at the end.
@@ -63,6 +87,11 @@ impl<'a> Line<'a> {
     pub fn error(&self, what: impl std::fmt::Display) -> Reason {
         Reason::malformed(format_args!("line {}", self.number), what)
     }
+}
+
+/// A text without the byte order mark that may lead it.
+pub(super) fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text)
 }
 
 /// The words of `bytes`, parted by blanks.

@@ -1,6 +1,6 @@
 //! One material of an MTL file, as it is put together statement by statement.
 
-use super::values;
+use super::statements::values;
 use crate::scene::load::text::{Line, float};
 use crate::scene::load::unit;
 use crate::scene::texture::Channel;

@@ -4,11 +4,11 @@
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
-use super::each_statement;
 use super::maps::{self, Map};
 use super::material::Draft;
+use super::statements::Statements;
 use crate::scene::load::Siblings;
-use crate::scene::load::text::{lossy, words};
+use crate::scene::load::text::{lossy, without_mark, words};
 use crate::scene::texture::{Channel, Image, ImageSource, TextureUse};
 use crate::scene::{AlphaTexture, LoadCx, Reason, Scene};
 use crate::task::Charge;
@@ -92,7 +92,10 @@ impl<'a> Materials<'a> {
         // Images are named from where the library is.
         let folder = &name[..name.rfind(['/', '\\']).map_or(0, |slash| slash + 1)];
         let before = self.found.len();
-        each_statement(&bytes, self.cx, |word, line| {
+        let cx = self.cx;
+        let mut statements = Statements::within(without_mark(&bytes), 1, cx);
+        while let Some(line) = statements.next()? {
+            let word = line.words().next().unwrap_or_default();
             if word == b"newmtl" {
                 let name = lossy(line.tail());
                 self.by_name.insert(name.clone(), self.found.len());
@@ -104,8 +107,7 @@ impl<'a> Materials<'a> {
             } else if let Some(draft) = self.found.last_mut() {
                 draft.set(word, &line);
             }
-            Ok(())
-        })?;
+        }
         Ok(true)
     }
 

@@ -2,35 +2,37 @@
 //! that the triangles stay in file order.
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
+use super::corners::{Corner, NONE};
 use super::vertices::Vertices;
 use crate::geometry::num;
 use crate::scene::load::mesh_bytes;
 use crate::scene::{LoadCx, Mesh, Reason};
-use crate::task::Charge;
-
-/// One corner of a face.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct Corner {
-    pub position: u32,
-    pub uv: Option<u32>,
-    pub normal: Option<u32>,
-}
+use crate::task::{Cancelled, Charge};
 
 pub(super) struct Meshes<'a> {
     from: &'a Vertices,
+    cx: &'a LoadCx,
     done: Vec<Mesh>,
+    /// The present mesh, of which the vertices are made when it ends.
     mesh: Mesh,
-    /// The corner that each vertex of the mesh was made of, and the vertex that was made of the
-    /// same position before it.
-    made_of: Vec<(Corner, u32)>,
+    made_of: Vec<Made>,
     /// By position, the last vertex made of it. Entries of meshes before this one are recognised
     /// by what `made_of` says, so that nothing has to be cleared between meshes.
     last: Vec<u32>,
     uses: Uses,
     memory: Charge,
-    /// Bytes of the present mesh that are charged.
-    charged: u64,
+    /// For the triangles of the present mesh and for `made_of`.
+    growing: Charge,
+}
+
+/// The corner that a vertex of the mesh was made of, and the vertex that was made of the same
+/// position before it.
+#[derive(Clone, Copy)]
+struct Made {
+    of: Corner,
+    older: u32,
 }
 
 /// Which attributes a corner of the present mesh has.
@@ -40,14 +42,13 @@ struct Uses {
     normals: bool,
 }
 
-const NONE: u32 = u32::MAX;
-
 impl<'a> Meshes<'a> {
-    pub fn new(from: &'a Vertices, cx: &LoadCx) -> Result<Self, Reason> {
+    pub fn new(from: &'a Vertices, cx: &'a LoadCx) -> Result<Self, Reason> {
         let memory = cx.budget.charge(from.positions.len() as u64 * 4)?;
         let last = vec![NONE; from.positions.len()];
+        let growing = cx.budget.charge(0)?;
         let (done, mesh, made_of, uses) = Default::default();
-        Ok(Self { from, done, mesh, made_of, last, uses, memory, charged: 0 })
+        Ok(Self { from, cx, done, mesh, made_of, last, uses, memory, growing })
     }
 
     /// An object or a group begins.
@@ -66,6 +67,13 @@ impl<'a> Meshes<'a> {
         Ok(())
     }
 
+    /// Makes room for faces of so many corners together, which is charged.
+    pub fn make_room(&mut self, corners: usize) -> Result<(), Reason> {
+        make_room(&mut self.made_of, corners, &mut self.growing)?;
+        // A fan has fewer triangles than corners.
+        make_room(&mut self.mesh.triangles, corners, &mut self.growing)
+    }
+
     /// Adds a polygon of three corners or more.
     pub fn fan(&mut self, corners: &[Corner]) -> Result<(), Reason> {
         let [a, b, rest @ ..] = corners else { return Ok(()) };
@@ -75,72 +83,71 @@ impl<'a> Meshes<'a> {
             self.mesh.triangles.push([first, before, vertex]);
             before = vertex;
         }
-        self.account()
+        let vertices = self.made_of.len();
+        if vertices >= num::MAX_INDEX / 2 { Err(Reason::TooLarge(vertices as u64, "vertices")) } else { Ok(()) }
     }
 
     /// The vertex for a corner, an earlier one where there is one. After a few that share the
     /// position but nothing else a new one is made: a file of such corners must not take
     /// quadratic time.
+    #[inline]
     fn vertex(&mut self, corner: &Corner) -> u32 {
         const LOOKS: usize = 32;
-        let newest = self.last[corner.position as usize];
-        let mut at = newest;
+        let last = &mut self.last[corner.position as usize];
+        let mut at = *last;
         for _ in 0..LOOKS {
             match self.made_of.get(at as usize) {
-                Some((made_of, _)) if made_of == corner => return at,
-                Some((made_of, older)) if made_of.position == corner.position => at = *older,
+                Some(made) if made.of == *corner => return at,
+                Some(made) if made.of.position == corner.position => at = made.older,
                 _ => break,
             }
         }
-        let vertex = num::index(self.mesh.positions.len());
-        self.made_of.push((*corner, newest));
-        self.last[corner.position as usize] = vertex;
-        self.push(corner);
+        let vertex = num::index(self.made_of.len());
+        self.made_of.push(Made { of: *corner, older: *last });
+        *last = vertex;
+        self.uses.uvs |= corner.uv != NONE;
+        self.uses.normals |= corner.normal != NONE;
         vertex
     }
 
-    fn push(&mut self, corner: &Corner) {
-        let (mesh, from) = (&mut self.mesh, self.from);
-        let pick = |i: Option<u32>| i.map(|i| i as usize);
-        mesh.positions.push(from.positions[corner.position as usize]);
-        mesh.colors.extend(from.colors.get(corner.position as usize));
-        mesh.uvs.push(pick(corner.uv).map_or(Vec2::ZERO, |i| from.uvs[i]));
-        mesh.normals.push(pick(corner.normal).map_or(Vec3::ZERO, |i| from.normals[i]));
-        self.uses.uvs |= corner.uv.is_some();
-        self.uses.normals |= corner.normal.is_some();
-    }
-
-    /// Charges what the mesh has grown by, a step at a time.
-    fn account(&mut self) -> Result<(), Reason> {
-        const STEP: u64 = 1 << 20;
-        let bytes = mesh_bytes(&self.mesh) + self.made_of.len() as u64 * size_of::<(Corner, u32)>() as u64;
-        if bytes > self.charged + STEP {
-            self.memory.grow(bytes - self.charged)?;
-            self.charged = bytes;
-        }
-        let vertices = self.mesh.positions.len();
-        if vertices >= num::MAX_INDEX / 2 { Err(Reason::TooLarge(vertices as u64, "vertices")) } else { Ok(()) }
-    }
-
     /// Puts the present mesh away, if it holds anything, and begins one of the same name and
-    /// material. Where only some corners have an attribute, the others have zeros.
+    /// material.
     fn end(&mut self) -> Result<(), Reason> {
         if self.mesh.triangles.is_empty() {
             return Ok(());
         }
         let next = Mesh { name: self.mesh.name.clone(), material: self.mesh.material, ..Mesh::default() };
         let mut mesh = std::mem::replace(&mut self.mesh, next);
-        let uses = std::mem::take(&mut self.uses);
-        if !uses.uvs {
-            mesh.uvs = Vec::new();
-        }
-        if !uses.normals {
-            mesh.normals = Vec::new();
-        }
-        self.memory.grow(mesh_bytes(&mesh).saturating_sub(self.charged))?;
-        self.charged = 0;
-        self.made_of.clear();
+        mesh.triangles.shrink_to_fit();
+        self.memory.grow(self.vertex_bytes() + mesh_bytes(&mesh))?;
+        self.make_vertices(&mut mesh)?;
         self.done.push(mesh);
+        self.uses = Uses::default();
+        self.made_of.clear();
+        self.growing = self.cx.budget.charge((self.made_of.capacity() * size_of::<Made>()) as u64)?;
+        Ok(())
+    }
+
+    fn vertex_bytes(&self) -> u64 {
+        let each = |there: bool, bytes: usize| if there { bytes } else { 0 };
+        let colored = !self.from.colors.is_empty();
+        let bytes = 12 + each(self.uses.uvs, 8) + each(self.uses.normals, 12) + each(colored, 16);
+        (self.made_of.len() * bytes) as u64
+    }
+
+    /// Where only some corners have an attribute, the others have zeros.
+    fn make_vertices(&self, mesh: &mut Mesh) -> Result<(), Cancelled> {
+        let Self { from, uses, cx, .. } = self;
+        mesh.positions = gather(&self.made_of, cx, |of| from.positions[of.position as usize])?;
+        if uses.uvs {
+            mesh.uvs = gather(&self.made_of, cx, |of| from.uvs.get(of.uv as usize).copied().unwrap_or(Vec2::ZERO))?;
+        }
+        if uses.normals {
+            mesh.normals = gather(&self.made_of, cx, |of| from.normals.get(of.normal as usize).copied().unwrap_or(Vec3::ZERO))?;
+        }
+        if !from.colors.is_empty() {
+            mesh.colors = gather(&self.made_of, cx, |of| from.colors[of.position as usize])?;
+        }
         Ok(())
     }
 
@@ -148,4 +155,29 @@ impl<'a> Meshes<'a> {
         self.end()?;
         Ok(self.done)
     }
+}
+
+/// What `pick` says of every vertex.
+fn gather<T: Copy + Send>(made_of: &[Made], cx: &LoadCx, pick: impl Fn(&Corner) -> T + Sync) -> Result<Vec<T>, Cancelled> {
+    /// Vertices between two looks at the cancel flag.
+    const BLOCK: usize = 1 << 19;
+    /// Vertices that are not worth another thread.
+    const FEW: usize = 1 << 12;
+    let mut list = Vec::with_capacity(made_of.len());
+    for block in made_of.chunks(BLOCK) {
+        cx.cancel.check()?;
+        list.par_extend(block.par_iter().with_min_len(FEW).map(|made| pick(&made.of)));
+    }
+    Ok(list)
+}
+
+/// Makes room for `more` in a list, twice what it had where it has to move.
+fn make_room<T>(list: &mut Vec<T>, more: usize, memory: &mut Charge) -> Result<(), Reason> {
+    let needed = list.len() + more;
+    if needed > list.capacity() {
+        let capacity = needed.max(2 * list.capacity());
+        memory.grow(((capacity - list.capacity()) * size_of::<T>()) as u64)?;
+        list.reserve_exact(capacity - list.len());
+    }
+    Ok(())
 }

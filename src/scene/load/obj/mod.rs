@@ -5,25 +5,39 @@
 //! corners have a texture coordinate or a normal, returns lists that no longer match the vertices.
 //! The tests use it to check this reader.
 //!
-//! The file is read twice: positions and the like first, then faces, because a face may come
-//! before its vertices, and a `usemtl` before its `mtllib`.
+//! The file is cut into pieces that are read side by side ([`piece`]), each by itself; then they are
+//! put together in order ([`replay`]), because a face may come before its vertices and counts back
+//! from where it stands, and a `usemtl` may come before its `mtllib`.
 
-mod faces;
+mod corners;
+mod cut;
 mod maps;
 mod material;
 mod materials;
 mod meshes;
+mod numbers;
+mod piece;
+mod quick;
+mod replay;
+mod statements;
 mod vertices;
 
-use super::text::{Line, Lines};
+use super::text::without_mark;
 use super::{Loader, Siblings};
 use crate::scene::{LoadCx, Reason, Scene};
+use crate::task::Charge;
 use glam::Vec3;
 use materials::Materials;
+use piece::Piece;
+use rayon::prelude::*;
+use replay::Replay;
 use vertices::Vertices;
 
 /// The reader of `.obj` files.
 pub(super) struct Obj;
+
+/// Bytes of a piece. What is made of it fits a core's cache.
+const PIECE: usize = 1 << 18;
 
 impl Loader for Obj {
     fn id(&self) -> &'static str {
@@ -35,54 +49,58 @@ impl Loader for Obj {
     }
 
     fn load(&self, bytes: &[u8], files: &dyn Siblings, cx: &LoadCx) -> Result<Scene, Reason> {
-        cx.progress.start("parse", 2 * bytes.len() as u64);
-        // A vertex takes 8 bytes of text ("v 0 0 0") and at most 24 in a list.
-        let _memory = cx.budget.charge(3 * bytes.len() as u64)?;
-        let mut vertices = Vertices::default();
-        let mut materials = Materials::new(files, cx)?;
-        each_statement(bytes, cx, |word, line| match word {
-            b"mtllib" => materials.library(line.tail()),
-            _ => vertices.statement(word, &line),
-        })?;
-        let mut faces = faces::Faces::new(&vertices, &mut materials, cx)?;
-        each_statement(bytes, cx, |word, line| faces.statement(word, &line))?;
-        let mut scene = Scene { up: Vec3::Y, ..faces.finish()? };
-        materials.finish(&mut scene);
-        Ok(scene)
+        cx.pool.run(|| in_pieces(bytes, PIECE, files, cx))
     }
 }
 
-/// Calls `each` with the first word of every line and the line, of which a backslash at the end
-/// joins the next.
-fn each_statement(bytes: &[u8], cx: &LoadCx, mut each: impl FnMut(&[u8], Line<'_>) -> Result<(), Reason>) -> Result<(), Reason> {
-    const MAX_JOINED: usize = 1 << 20;
-    let mut lines = Lines::new(bytes, 1, cx);
-    let mut joined = Vec::new();
-    while let Some(mut line) = lines.next()? {
-        joined.clear();
-        while let Some(begin) = line.bytes.strip_suffix(b"\\") {
-            joined.extend_from_slice(begin);
-            joined.push(b' ');
-            if joined.len() > MAX_JOINED {
-                return Err(line.error("it is joined to a line longer than a mebibyte"));
-            }
-            let Some(next) = lines.next()? else { break };
-            line = next;
-        }
-        if !joined.is_empty() {
-            joined.extend_from_slice(line.bytes);
-            line.bytes = &joined;
-        }
-        if let Some(word) = line.words().next().filter(|word| !word.starts_with(b"#")) {
-            each(word, line)?;
-        }
+/// Reads a model in pieces of about `size` bytes.
+fn in_pieces(bytes: &[u8], size: usize, files: &dyn Siblings, cx: &LoadCx) -> Result<Scene, Reason> {
+    cx.progress.start("parse", bytes.len() as u64);
+    let texts = cut::cut(without_mark(bytes), size, cx)?;
+    let mut pieces = read(&texts, cx)?;
+    let mut materials = Materials::new(files, cx)?;
+    for name in pieces.iter().flat_map(Piece::libraries) {
+        materials.library(name)?;
     }
-    Ok(())
+    cx.progress.start("merge", pieces.iter().map(|piece| piece.indices.len() as u64).sum());
+    let (vertices, _memory) = join_vertices(&mut pieces, cx)?;
+    let mut replay = Replay::new(&vertices, &mut materials, cx)?;
+    for (piece, text) in pieces.into_iter().zip(texts) {
+        replay.piece(&piece, text)?;
+    }
+    let mut scene = Scene { up: Vec3::Y, ..replay.finish()? };
+    materials.finish(&mut scene);
+    Ok(scene)
 }
 
-/// The values of a statement: its words without the first, up to a comment.
-fn values<'a>(line: &Line<'a>) -> impl Iterator<Item = &'a [u8]> + use<'a> {
-    line.words().skip(1).take_while(|word| !word.starts_with(b"#"))
+/// Reads all pieces. If there is something wrong with several of them, the first one counts.
+fn read(texts: &[&[u8]], cx: &LoadCx) -> Result<Vec<Piece>, Reason> {
+    let results: Vec<_> = texts.par_iter().map(|text| Piece::read(text, 1, cx)).collect();
+    let mut pieces = Vec::with_capacity(texts.len());
+    let mut first = 1;
+    for (result, text) in results.into_iter().zip(texts) {
+        let piece = match result {
+            // Only now is it known which line that is.
+            Err(Reason::Malformed { .. }) => Piece::read(text, first, cx)?,
+            other => other?,
+        };
+        first += piece.lines;
+        pieces.push(piece);
+    }
+    Ok(pieces)
+}
+
+fn join_vertices(pieces: &mut [Piece], cx: &LoadCx) -> Result<(Vertices, Charge), Reason> {
+    let mut totals = [0; 3];
+    let mut parts = Vec::with_capacity(pieces.len());
+    let mut memory = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        totals = std::array::from_fn(|part| totals[part] + piece.counts[part]);
+        let (vertices, charge) = piece.take_vertices(cx)?;
+        parts.push(vertices);
+        memory.push(charge);
+    }
+    Vertices::joined(&parts, totals, cx)
 }
 
 #[cfg(test)]

@@ -108,3 +108,75 @@ fn many_corners_of_one_position_take_no_quadratic_time() {
     assert_eq!(load(&Obj, text.as_bytes()).expect("a model").triangle_count(), n);
     assert!(start.elapsed().as_secs() < 10);
 }
+
+/// What a text gives when it is cut into pieces of about `size` bytes.
+fn cut_to(size: usize, text: &[u8]) -> Result<String, String> {
+    let mtl: &[u8] = b"newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n";
+    let cx = LoadCx { budget: crate::task::Budget::new(1 << 30), ..LoadCx::unattended() };
+    let result = in_pieces(text, size, &Beside(&[("a.mtl", mtl)]), &cx);
+    assert_eq!(cx.budget.used(), 0, "memory stays charged");
+    result.inspect(check).map(|scene| format!("{scene:?}")).map_err(|reason| reason.to_string())
+}
+
+#[test]
+fn pieces_of_any_size_give_the_same() {
+    let texts = [
+        format!("f 1 2 3\nf 4/1 -1/-1 -2\nvt 0 1\n{SQUARE}f -4 -3 -2\nv 7 8 9\nf -1 -2 -3 1\nf 1 2 3 4\n"),
+        format!(
+            "{SQUARE}vn 0 0 1\ng a\nf 1//1 2//1 3//-1\nf 1 2 3\nusemtl red\nf 1 3 4\nf 1 2 4\no b c\nf 1 2 3\nmtllib a.mtl\nusemtl x\nf 1 2 3\n"
+        ),
+        "v 0 0 0\r\nv 1 0 0 1 0 0\rv 0 1 \\\n0\n# x \\\r\nv 9 9 9\n\n\r\nf 1 2\\\r\n 3\\\n\\\n 1\nl 1 2\nf 1 2\nf\n".into(),
+        format!("{SQUARE}vt 0 0\nf 1/1 2/1 3/1\nf 1/1 2/2 3/1\nvt 1 1\nf 1/-3 2/9 3\nvn 1 0 0\nf 1//2 2 3\n"),
+        format!("{SQUARE}f 1 2 3\n\nf 1 2 -5\nv 0 0 0\n"),
+        format!("{SQUARE}f 1 2 3\n\nf 1 2 x\nf 1 2 9\nv 0 0 0\n"),
+        format!("{SQUARE}f 1 2 x\nvn 0 0 0\n\nv 0 0 y\nvt\n"),
+        "\u{FEFF}v 0 0 0\n\u{FEFF}v 1 0 0\nv 1 1 0\nv 2 2 0\nf 1 2 3 # 4\n".into(),
+    ];
+    for text in texts {
+        let text = text.as_bytes();
+        let whole = cut_to(text.len(), text);
+        for size in 0..text.len() {
+            assert_eq!(cut_to(size, text), whole, "{size} of {}", String::from_utf8_lossy(text));
+        }
+    }
+}
+
+#[test]
+fn errors_name_the_line_in_any_piece() {
+    for (size, lines) in [(PIECE, 50_000), (100, 100)] {
+        let long = "v 1 2 3\n".repeat(lines);
+        let said = |end: &str| cut_to(size, format!("{long}{end}").as_bytes()).expect_err("broken");
+        assert_eq!(said("f 1 2 x\n"), format!("line {}: 'x' is no corner of a face", lines + 1));
+        assert_eq!(said("\nf 1 -999999 2\n"), format!("line {}: there is no vertex -999999; the file has {lines}", lines + 2));
+        assert_eq!(said("f 1 2 x\n\nv 1 2\n"), format!("line {}: it has 2 numbers, not 3", lines + 3));
+        assert_eq!(said(&"x".repeat(7 << 20)), format!("line {}: it is longer than a mebibyte", lines + 1));
+        assert!(said(&"x\\\n".repeat(3 << 20)).ends_with("it is joined to a line longer than a mebibyte"));
+    }
+}
+
+#[test]
+fn lines_as_usual_and_with_comments_are_the_same() {
+    let usual = format!(
+        "{SQUARE}v 1 2 3 .5 .25 0\nvt .5\nvt 1 2 3\nvn 1e0 -2 .3\nf 1 2 3\nf 5/1 -1/-1 3/2\nf 1//1 2//1 3//-1\nf 1/1/1 2/2/1 3/1/1 4/1/1\n"
+    );
+    let commented = usual.replace('\n', " # the long way\n");
+    let spread = usual.replace(' ', "\t  ").replace('\n', " \r\n");
+    assert!(cut_to(PIECE, usual.as_bytes()).is_ok());
+    assert_eq!(cut_to(PIECE, commented.as_bytes()), cut_to(PIECE, usual.as_bytes()));
+    assert_eq!(cut_to(PIECE, spread.as_bytes()), cut_to(PIECE, usual.as_bytes()));
+}
+
+#[test]
+fn a_backslash_joins_whatever_number_it_follows() {
+    assert_eq!(error("v 0 0 1.#IND\\\nx y z\n"), "line 2: 'x' is no number");
+}
+
+#[test]
+fn memory_is_charged_before_it_is_taken() {
+    let text = format!("{SQUARE}{}", "f 1 2 3\n".repeat(100_000));
+    for kib in [1, 10, 100, 1000, 2000] {
+        let cx = LoadCx { budget: crate::task::Budget::new(kib << 10), ..LoadCx::unattended() };
+        assert!(matches!(Obj.load(text.as_bytes(), &Beside(&[]), &cx), Err(Reason::Memory(_))), "{kib}");
+        assert_eq!(cx.budget.used(), 0);
+    }
+}
