@@ -9,22 +9,23 @@ use super::vertices::Vertices;
 use crate::geometry::num;
 use crate::scene::load::mesh_bytes;
 use crate::scene::{LoadCx, Mesh, Reason};
+use crate::sys::list_in_large_pages;
 use crate::task::{Cancelled, Charge};
 
 pub(super) struct Meshes<'a> {
     from: &'a Vertices,
     cx: &'a LoadCx,
     done: Vec<Mesh>,
-    /// The present mesh, of which the vertices are made when it ends.
+    /// The present mesh, of which the lists are made when it ends.
     mesh: Mesh,
+    /// Its triangles, with room for all of the file.
+    triangles: Vec<[u32; 3]>,
     made_of: Vec<Made>,
     /// By position, the last vertex made of it. Entries of meshes before this one are recognised
     /// by what `made_of` says, so that nothing has to be cleared between meshes.
     last: Vec<u32>,
     uses: Uses,
     memory: Charge,
-    /// For the triangles of the present mesh and for `made_of`.
-    growing: Charge,
 }
 
 /// The corner that a vertex of the mesh was made of, and the vertex that was made of the same
@@ -43,12 +44,12 @@ struct Uses {
 }
 
 impl<'a> Meshes<'a> {
-    pub fn new(from: &'a Vertices, cx: &'a LoadCx) -> Result<Self, Reason> {
-        let memory = cx.budget.charge(from.positions.len() as u64 * 4)?;
-        let last = vec![NONE; from.positions.len()];
-        let growing = cx.budget.charge(0)?;
+    /// For a file of so many triangles.
+    pub fn new(from: &'a Vertices, triangles: usize, cx: &'a LoadCx) -> Result<Self, Reason> {
+        let memory = cx.budget.charge(from.positions.len() as u64 * 4 + triangles as u64 * 12)?;
+        let last = gather(&from.positions, cx, |_| NONE)?;
         let (done, mesh, made_of, uses) = Default::default();
-        Ok(Self { from, cx, done, mesh, made_of, last, uses, memory, growing })
+        Ok(Self { from, cx, done, mesh, triangles: list_in_large_pages(triangles), made_of, last, uses, memory })
     }
 
     /// An object or a group begins.
@@ -67,11 +68,15 @@ impl<'a> Meshes<'a> {
         Ok(())
     }
 
-    /// Makes room for faces of so many corners together, which is charged.
+    /// Makes room for the vertices of faces of so many corners together, which is charged.
     pub fn make_room(&mut self, corners: usize) -> Result<(), Reason> {
-        make_room(&mut self.made_of, corners, &mut self.growing)?;
-        // A fan has fewer triangles than corners.
-        make_room(&mut self.mesh.triangles, corners, &mut self.growing)
+        let needed = self.made_of.len() + corners;
+        if needed > self.made_of.capacity() {
+            let capacity = needed.max(2 * self.made_of.capacity());
+            self.memory.grow(((capacity - self.made_of.capacity()) * size_of::<Made>()) as u64)?;
+            self.made_of.reserve_exact(capacity - self.made_of.len());
+        }
+        Ok(())
     }
 
     /// Adds a polygon of three corners or more.
@@ -80,7 +85,7 @@ impl<'a> Meshes<'a> {
         let (first, mut before) = (self.vertex(a), self.vertex(b));
         for corner in rest {
             let vertex = self.vertex(corner);
-            self.mesh.triangles.push([first, before, vertex]);
+            self.triangles.push([first, before, vertex]);
             before = vertex;
         }
         let vertices = self.made_of.len();
@@ -113,40 +118,43 @@ impl<'a> Meshes<'a> {
     /// Puts the present mesh away, if it holds anything, and begins one of the same name and
     /// material.
     fn end(&mut self) -> Result<(), Reason> {
-        if self.mesh.triangles.is_empty() {
+        if self.triangles.is_empty() {
             return Ok(());
         }
         let next = Mesh { name: self.mesh.name.clone(), material: self.mesh.material, ..Mesh::default() };
         let mut mesh = std::mem::replace(&mut self.mesh, next);
-        mesh.triangles.shrink_to_fit();
-        self.memory.grow(self.vertex_bytes() + mesh_bytes(&mesh))?;
-        self.make_vertices(&mut mesh)?;
+        self.memory.grow(self.bytes() + mesh_bytes(&mesh))?;
+        self.make_lists(&mut mesh)?;
         self.done.push(mesh);
         self.uses = Uses::default();
+        self.triangles.clear();
         self.made_of.clear();
-        self.growing = self.cx.budget.charge((self.made_of.capacity() * size_of::<Made>()) as u64)?;
         Ok(())
     }
 
-    fn vertex_bytes(&self) -> u64 {
+    /// What the lists of the present mesh will take.
+    fn bytes(&self) -> u64 {
         let each = |there: bool, bytes: usize| if there { bytes } else { 0 };
         let colored = !self.from.colors.is_empty();
-        let bytes = 12 + each(self.uses.uvs, 8) + each(self.uses.normals, 12) + each(colored, 16);
-        (self.made_of.len() * bytes) as u64
+        let vertex = 12 + each(self.uses.uvs, 8) + each(self.uses.normals, 12) + each(colored, 16);
+        (self.made_of.len() * vertex + self.triangles.len() * 12) as u64
     }
 
     /// Where only some corners have an attribute, the others have zeros.
-    fn make_vertices(&self, mesh: &mut Mesh) -> Result<(), Cancelled> {
-        let Self { from, uses, cx, .. } = self;
-        mesh.positions = gather(&self.made_of, cx, |of| from.positions[of.position as usize])?;
+    fn make_lists(&mut self, mesh: &mut Mesh) -> Result<(), Cancelled> {
+        // The only mesh of a file need not be copied.
+        let all = self.triangles.len() == self.triangles.capacity();
+        mesh.triangles = if all { std::mem::take(&mut self.triangles) } else { gather(&self.triangles, self.cx, |t| *t)? };
+        let Self { from, uses, cx, made_of, .. } = self;
+        mesh.positions = gather(made_of, cx, |made| from.positions[made.of.position as usize])?;
         if uses.uvs {
-            mesh.uvs = gather(&self.made_of, cx, |of| from.uvs.get(of.uv as usize).copied().unwrap_or(Vec2::ZERO))?;
+            mesh.uvs = gather(made_of, cx, |made| from.uvs.get(made.of.uv as usize).copied().unwrap_or(Vec2::ZERO))?;
         }
         if uses.normals {
-            mesh.normals = gather(&self.made_of, cx, |of| from.normals.get(of.normal as usize).copied().unwrap_or(Vec3::ZERO))?;
+            mesh.normals = gather(made_of, cx, |made| from.normals.get(made.of.normal as usize).copied().unwrap_or(Vec3::ZERO))?;
         }
         if !from.colors.is_empty() {
-            mesh.colors = gather(&self.made_of, cx, |of| from.colors[of.position as usize])?;
+            mesh.colors = gather(made_of, cx, |made| from.colors[made.of.position as usize])?;
         }
         Ok(())
     }
@@ -157,27 +165,20 @@ impl<'a> Meshes<'a> {
     }
 }
 
-/// What `pick` says of every vertex.
-fn gather<T: Copy + Send>(made_of: &[Made], cx: &LoadCx, pick: impl Fn(&Corner) -> T + Sync) -> Result<Vec<T>, Cancelled> {
-    /// Vertices between two looks at the cancel flag.
+/// What `pick` says of every item.
+fn gather<S: Sync, T: Send>(items: &[S], cx: &LoadCx, pick: impl Fn(&S) -> T + Sync) -> Result<Vec<T>, Cancelled> {
+    /// Items between two looks at the cancel flag.
     const BLOCK: usize = 1 << 19;
-    /// Vertices that are not worth another thread.
+    /// Items that are not worth another thread.
     const FEW: usize = 1 << 12;
-    let mut list = Vec::with_capacity(made_of.len());
-    for block in made_of.chunks(BLOCK) {
+    let mut list = list_in_large_pages(items.len());
+    for block in items.chunks(BLOCK) {
         cx.cancel.check()?;
-        list.par_extend(block.par_iter().with_min_len(FEW).map(|made| pick(&made.of)));
+        if block.len() <= FEW {
+            list.extend(block.iter().map(&pick));
+        } else {
+            list.par_extend(block.par_iter().with_min_len(FEW).map(&pick));
+        }
     }
     Ok(list)
-}
-
-/// Makes room for `more` in a list, twice what it had where it has to move.
-fn make_room<T>(list: &mut Vec<T>, more: usize, memory: &mut Charge) -> Result<(), Reason> {
-    let needed = list.len() + more;
-    if needed > list.capacity() {
-        let capacity = needed.max(2 * list.capacity());
-        memory.grow(((capacity - list.capacity()) * size_of::<T>()) as u64)?;
-        list.reserve_exact(capacity - list.len());
-    }
-    Ok(())
 }

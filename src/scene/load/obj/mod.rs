@@ -64,7 +64,8 @@ fn in_pieces(bytes: &[u8], size: usize, files: &dyn Siblings, cx: &LoadCx) -> Re
     }
     cx.progress.start("merge", pieces.iter().map(|piece| piece.indices.len() as u64).sum());
     let (vertices, _memory) = join_vertices(&mut pieces, cx)?;
-    let mut replay = Replay::new(&vertices, &mut materials, cx)?;
+    let triangles = pieces.iter().map(Piece::triangles).sum();
+    let mut replay = Replay::new(&vertices, triangles, &mut materials, cx)?;
     for (piece, text) in pieces.into_iter().zip(texts) {
         replay.piece(&piece, text)?;
     }

@@ -100,7 +100,7 @@ fn digits(text: &[u8], at: usize, mut number: u64) -> (u64, usize) {
     let mut count = 0;
     loop {
         let (more, n) = up_to_eight(eight(text, at + count));
-        number = number.wrapping_mul(TENS[n]).wrapping_add(more);
+        number = if number == 0 { more } else { number.wrapping_mul(TENS[n]).wrapping_add(more) };
         count += n;
         if n < 8 {
             return (number, count);

@@ -100,6 +100,15 @@ impl Piece {
         self.steps.iter().filter_map(library)
     }
 
+    /// The triangles that the faces are cut into.
+    pub fn triangles(&self) -> usize {
+        let of = |step: &Step| match *step {
+            Step::Faces { corners, count, .. } => (corners as usize).saturating_sub(2) * count as usize,
+            _ => 0,
+        };
+        self.steps.iter().map(of).sum()
+    }
+
     fn statement(&mut self, line: &Line) -> Result<(), Reason> {
         let Some(word) = line.words().next() else { return Ok(()) };
         match word {

@@ -106,21 +106,27 @@ fn corner(text: &[u8], at: usize) -> Option<([i64; 3], Layout, usize)> {
 /// The first `N` values from `at` on, of which at least `least` are there, how many are, and where
 /// the line ends.
 #[inline(always)]
-fn floats<const N: usize>(text: &[u8], mut at: usize, least: usize) -> Option<([f32; N], usize, usize)> {
+fn floats<const N: usize>(text: &[u8], at: usize, least: usize) -> Option<([f32; N], usize, usize)> {
     let mut values = [0.0; N];
-    for found in 0..N {
+    let (found, end) = fill(&mut values, text, at)?;
+    (found >= least).then_some((values, found, end))
+}
+
+/// Once for lists of any length: it is long, and a processor keeps only so much code at hand.
+#[inline(never)]
+fn fill(values: &mut [f32], text: &[u8], mut at: usize) -> Option<(usize, usize)> {
+    for (found, value) in values.iter_mut().enumerate() {
         at = blanks(text, at);
         if ends_line(byte(text, at)) {
-            let end = after(text, at)?;
-            return (found >= least).then_some((values, found, end));
+            return Some((found, after(text, at)?));
         }
-        (values[found], at) = float(text, at)?;
+        (*value, at) = float(text, at)?;
     }
     let more = text.get(at..)?;
     at += more.iter().position(|b| ends_line(*b)).unwrap_or(more.len());
     // A backslash there joins the next line.
     let end = after(text, at).filter(|_| byte(text, at - 1) != b'\\')?;
-    Some((values, N, end))
+    Some((values.len(), end))
 }
 
 /// The first byte from `at` on that does not part words.

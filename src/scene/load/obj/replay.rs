@@ -40,9 +40,15 @@ struct LeftOut {
 }
 
 impl<'a, 'b> Replay<'a, 'b> {
-    pub fn new(vertices: &'a Vertices, materials: &'a mut Materials<'b>, cx: &'a LoadCx) -> Result<Self, Reason> {
+    /// For a file of so many `triangles`.
+    pub fn new(
+        vertices: &'a Vertices,
+        triangles: usize,
+        materials: &'a mut Materials<'b>,
+        cx: &'a LoadCx,
+    ) -> Result<Self, Reason> {
         let (before, left_out) = Default::default();
-        let meshes = Meshes::new(vertices, cx)?;
+        let meshes = Meshes::new(vertices, triangles, cx)?;
         Ok(Self { materials, meshes, totals: vertices.counts(), before, left_out, pace: Pace::new(cx), cx })
     }
 

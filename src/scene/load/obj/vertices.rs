@@ -7,6 +7,7 @@ use super::statements::values;
 use crate::scene::load::linear_from_srgb;
 use crate::scene::load::text::{Line, float, shown};
 use crate::scene::{LoadCx, Reason};
+use crate::sys::list_in_large_pages;
 use crate::task::{Cancelled, Charge};
 
 #[derive(Default)]
@@ -94,7 +95,7 @@ impl Vertices {
 
 /// As [`chain`], where a part of which no position has a colour is white.
 fn colors(parts: &[Vertices], count: usize, cx: &LoadCx) -> Result<Vec<[f32; 4]>, Cancelled> {
-    let mut all = Vec::with_capacity(count);
+    let mut all = list_in_large_pages(count);
     for part in parts {
         cx.cancel.check()?;
         all.extend_from_slice(&part.colors);
@@ -104,7 +105,7 @@ fn colors(parts: &[Vertices], count: usize, cx: &LoadCx) -> Result<Vec<[f32; 4]>
 }
 
 fn chain<'a, T: Copy + 'a>(parts: impl Iterator<Item = &'a [T]>, count: usize, cx: &LoadCx) -> Result<Vec<T>, Cancelled> {
-    let mut all = Vec::with_capacity(count);
+    let mut all = list_in_large_pages(count);
     for part in parts {
         cx.cancel.check()?;
         all.extend_from_slice(part);
