@@ -55,6 +55,8 @@ const SPREAD: u64 = 18;
 impl Piece {
     /// Reads a piece of which the first line is number `first`, which only errors tell.
     pub fn read(text: &[u8], first: usize, cx: &LoadCx) -> Result<Self, Reason> {
+        // The many pieces that are left must not each go on to their own first look at the flag.
+        cx.cancel.check()?;
         let mut piece = Self::new(text.len(), cx)?;
         let mut statements = Statements::within(text, first, cx);
         loop {
