@@ -2,10 +2,12 @@
 
 #[cfg(feature = "peers")]
 pub mod embree;
+mod map;
 mod pages;
 #[cfg(all(feature = "peers", target_arch = "x86_64", not(target_env = "msvc")))]
 pub mod tinybvh;
 
+pub use map::Map;
 pub use pages::{list_in_large_pages, zeros_in_large_pages};
 
 use std::path::Path;

@@ -1,14 +1,18 @@
-//! Model files and the files beside them, read from the disk in pieces.
+//! Model files and the files beside them: small ones are read from the disk in pieces, large ones mapped.
 
 use std::fs::File;
 use std::io::{Error, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use super::{LoadCx, Reason, Siblings};
+use super::{Bytes, LoadCx, Reason, Siblings};
+use crate::sys::Map;
 use crate::task::Charge;
 
 /// Bytes between two looks at the cancel flag.
 const PIECE: usize = 1 << 20;
+
+/// A file of fewer bytes is read as quickly, and may then be written to meanwhile.
+const WORTH_MAPPING: u64 = 4 << 20;
 
 /// The size of the file at `path`, which must be an ordinary file: a pipe or a device could keep
 /// us waiting, or never end.
@@ -22,19 +26,31 @@ pub(super) fn size(path: &Path) -> Result<u64, Reason> {
     }
 }
 
-/// Reads a whole file. The bytes are charged to the budget before and while they are read, and
-/// `done` hears of each piece.
-pub(super) fn read(path: &Path, cx: &LoadCx, done: impl Fn(u64)) -> Result<(Vec<u8>, Charge), Reason> {
+/// The bytes of a whole file. Those that are read are charged to the budget before and while they are;
+/// those that are mapped take no memory that the system could not take back. `done` hears of each piece.
+pub(super) fn read(path: &Path, cx: &LoadCx, done: impl Fn(u64)) -> Result<(Bytes, Charge), Reason> {
     let io = |error| Reason::Io { path: path.to_owned(), error };
     let expected = size(path)?;
+    let file = File::open(path).map_err(io)?;
+    // Not every file system can map.
+    if expected >= WORTH_MAPPING
+        && let Ok(map) = Map::of(&file)
+    {
+        done(expected);
+        return Ok((map.into(), cx.budget.charge(0)?));
+    }
+    in_pieces(path, file, expected, cx, done)
+}
+
+fn in_pieces(path: &Path, mut file: File, expected: u64, cx: &LoadCx, done: impl Fn(u64)) -> Result<(Bytes, Charge), Reason> {
+    let io = |error| Reason::Io { path: path.to_owned(), error };
     let mut memory = cx.budget.charge(expected)?;
-    let mut file = File::open(path).map_err(io)?;
     let mut bytes = Vec::with_capacity(usize::try_from(expected).unwrap_or(0));
     loop {
         cx.cancel.check()?;
         let got = (&mut file).take(PIECE as u64).read_to_end(&mut bytes).map_err(io)?;
         if got == 0 {
-            return Ok((bytes, memory));
+            return Ok((bytes.into(), memory));
         }
         // A file can grow while it is read.
         memory.grow((bytes.len() as u64).saturating_sub(memory.bytes()))?;
@@ -62,7 +78,7 @@ impl<'a> Folder<'a> {
 }
 
 impl Siblings for Folder<'_> {
-    fn read(&self, name: &str) -> Result<Vec<u8>, Reason> {
+    fn read(&self, name: &str) -> Result<Bytes, Reason> {
         read(&self.locate(name)?, self.cx, |_| ()).map(|(bytes, _memory)| bytes)
     }
 

@@ -3,6 +3,7 @@
 //!
 //! The bytes come from anywhere: whoever reads them looks at each count before trusting it.
 
+mod bytes;
 mod disk;
 mod gltf;
 mod obj;
@@ -13,6 +14,8 @@ mod text;
 
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
+
+pub use bytes::Bytes;
 
 use super::{LoadCx, Mesh, Reason, Scene, texture};
 use crate::task::Charge;
@@ -39,7 +42,7 @@ pub trait Siblings: Sync {
     ///
     /// # Errors
     /// It cannot be read, or `name` is no relative path.
-    fn read(&self, name: &str) -> Result<Vec<u8>, Reason>;
+    fn read(&self, name: &str) -> Result<Bytes, Reason>;
 
     /// Where the file is that the model calls `name`, for reading it later. It need not be there.
     ///

@@ -8,10 +8,10 @@ use std::fs;
 pub(super) struct Beside<'a>(pub &'a [(&'a str, &'a [u8])]);
 
 impl Siblings for Beside<'_> {
-    fn read(&self, name: &str) -> Result<Vec<u8>, Reason> {
+    fn read(&self, name: &str) -> Result<Bytes, Reason> {
         let found = self.0.iter().find(|(known, _)| *known == name);
         let missing = || Reason::Io { path: name.into(), error: std::io::ErrorKind::NotFound.into() };
-        found.map(|(_, bytes)| bytes.to_vec()).ok_or_else(missing)
+        found.map(|(_, bytes)| bytes.to_vec().into()).ok_or_else(missing)
     }
 
     fn locate(&self, name: &str) -> Result<PathBuf, Reason> {
@@ -81,12 +81,27 @@ fn a_model_reads_only_what_is_named_relative_to_it() {
     fs::write(dir.path().join("up.bin"), b"up").expect("written");
     fs::write(inner.join("a b.bin"), b"ab").expect("written");
     let folder = disk::Folder::new(&inner, &cx);
-    assert_eq!(folder.read("../up.bin").expect("beside"), b"up");
-    assert_eq!(folder.read("..\\up.bin").expect("beside"), b"up");
-    assert_eq!(folder.read("a b.bin").expect("here"), b"ab");
+    assert_eq!(*folder.read("../up.bin").expect("beside"), *b"up");
+    assert_eq!(*folder.read("..\\up.bin").expect("beside"), *b"up");
+    assert_eq!(*folder.read("a b.bin").expect("here"), *b"ab");
     for name in ["/etc/passwd", "\\\\server\\share", "C:\\a.bin", "http://example.org/a.bin", "file:///etc/passwd"] {
         let refused = folder.read(name).expect_err("must not be read").to_string();
         assert!(refused.contains("only files named relative to the model"), "{refused}");
+    }
+}
+
+#[test]
+fn large_files_are_mapped_and_the_same() {
+    let cx = LoadCx { budget: crate::task::Budget::new(6 << 20), ..LoadCx::unattended() };
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("file");
+    for length in [0, 3, 2 << 20, 10 << 20] {
+        let content: Vec<u8> = (0..=250).cycle().take(length).collect();
+        fs::write(&path, &content).expect("written");
+        let heard = std::cell::Cell::new(0);
+        let (bytes, memory) = disk::read(&path, &cx, |n| heard.set(heard.get() + n)).expect("readable");
+        assert!(*bytes == content && heard.get() == content.len() as u64);
+        assert_eq!((memory.bytes(), bytes.held()), if length < 4 << 20 { (length as u64, length as u64) } else { (0, 0) });
     }
 }
 

@@ -1,13 +1,13 @@
 //! The bytes behind buffers and buffer views, fetched when first asked for.
 
-use std::borrow::Cow;
 use std::cell::{OnceCell, RefCell};
+use std::ops::Deref;
 
 use gltf::json::{Index, Root, buffer};
 
 use super::{extensions, uri};
-use crate::scene::load::Siblings;
 use crate::scene::load::text::clipped;
+use crate::scene::load::{Bytes, Siblings};
 use crate::scene::{LoadCx, Reason};
 use crate::task::Charge;
 
@@ -16,8 +16,27 @@ pub(super) struct Buffers<'a> {
     bin: Option<&'a [u8]>,
     files: &'a dyn Siblings,
     cx: &'a LoadCx,
-    loaded: Vec<OnceCell<Cow<'a, [u8]>>>,
+    loaded: Vec<OnceCell<Content<'a>>>,
     memory: RefCell<Charge>,
+}
+
+/// The bytes of a buffer.
+enum Content<'a> {
+    /// In the model's own file.
+    OfModel(&'a [u8]),
+    /// In its URI, or a file beside the model.
+    Own(Bytes),
+}
+
+impl Deref for Content<'_> {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::OfModel(bytes) => bytes,
+            Self::Own(bytes) => bytes,
+        }
+    }
 }
 
 /// The bytes of a buffer view.
@@ -71,8 +90,8 @@ impl<'a> Buffers<'a> {
             return Ok(Some(bytes));
         }
         let bytes = match (&buffer.uri, self.bin) {
-            (Some(uri), _) => Cow::Owned(self.fetch(uri, &place())?),
-            (None, Some(bin)) if index.value() == 0 => Cow::Borrowed(bin),
+            (Some(uri), _) => Content::Own(self.fetch(uri, &place())?),
+            (None, Some(bin)) if index.value() == 0 => Content::OfModel(bin),
             (None, _) => return Ok(None),
         };
         let declared = buffer.byte_length.0;
@@ -83,17 +102,17 @@ impl<'a> Buffers<'a> {
         Ok(Some(cell.get_or_init(|| bytes)))
     }
 
-    fn fetch(&self, uri: &str, place: &str) -> Result<Vec<u8>, Reason> {
+    fn fetch(&self, uri: &str, place: &str) -> Result<Bytes, Reason> {
         let bytes = match uri::data(uri, place, self.cx)? {
-            Some(bytes) => bytes,
+            Some(bytes) => bytes.into(),
             None => self.file(uri)?,
         };
-        self.memory.borrow_mut().grow(bytes.len() as u64)?;
+        self.memory.borrow_mut().grow(bytes.held())?;
         Ok(bytes)
     }
 
     /// The name is escaped as an URI, which not every program knows: try it as written, too.
-    fn file(&self, uri: &str) -> Result<Vec<u8>, Reason> {
+    fn file(&self, uri: &str) -> Result<Bytes, Reason> {
         let name = uri::file_name(uri);
         match self.files.read(&name) {
             Err(Reason::Io { .. }) if name != uri => self.files.read(uri).or_else(|_| self.files.read(&name)),
