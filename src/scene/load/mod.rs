@@ -5,6 +5,7 @@
 
 mod bytes;
 mod disk;
+mod fill;
 mod gltf;
 mod obj;
 mod pace;

@@ -64,12 +64,25 @@ impl<'a> Accessor<'a> {
     /// stays as in `or`.
     #[inline]
     pub fn vector<const N: usize>(&self, i: usize, or: [f32; N]) -> [f32; N] {
+        if let Some(floats) = self.floats::<N>(i) {
+            return floats;
+        }
         let mut vector = or;
         let bytes = self.element(i);
         for (c, x) in vector.iter_mut().enumerate().take(self.width) {
             *x = bytes.map_or(0.0, |bytes| self.component(bytes, c));
         }
         vector
+    }
+
+    /// The usual case on a road of its own: floats, as many as are wanted, none of them replaced.
+    #[inline(always)]
+    fn floats<const N: usize>(&self, i: usize) -> Option<[f32; N]> {
+        if self.width != N || self.kind != ComponentType::F32 || self.replaced.is_some() {
+            return None;
+        }
+        let (components, _) = self.base?.get(i).as_chunks();
+        components.first_chunk::<N>().map(|floats| floats.map(f32::from_le_bytes))
     }
 
     /// The element `i` as an index. The accessor is one of unsigned scalars.

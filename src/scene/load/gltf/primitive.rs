@@ -1,5 +1,6 @@
 //! One primitive of a glTF mesh becomes one mesh of ours.
 
+use bytemuck::Zeroable;
 use glam::{Vec2, Vec3};
 use gltf::json::accessor::ComponentType;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
@@ -11,6 +12,7 @@ use super::buffers::Buffers;
 use super::picked::Picked;
 use super::{extensions, materials, textures};
 use crate::geometry::num;
+use crate::scene::load::fill;
 use crate::scene::load::pace::Pace;
 use crate::scene::load::text::clipped;
 use crate::scene::{LoadCx, Mesh, Reason};
@@ -74,7 +76,7 @@ impl<'a, 'b> Primitives<'a, 'b> {
         // For as long as this takes; whoever keeps the mesh charges it again.
         let mut memory = self.cx.budget.charge(0)?;
         let corners = self.corners(primitive, positions.count, &place, &mut memory)?;
-        let triangles = self.triangles(mode, corners.as_deref(), positions.count, &mut memory)?;
+        let triangles = self.triangles(mode, corners, positions.count, &mut memory)?;
         let (picked, triangles) = Picked::of(triangles, positions.count, &mut self.pace)?;
         memory.grow(picked.count() as u64 * VERTEX)?;
 
@@ -155,7 +157,7 @@ impl<'a, 'b> Primitives<'a, 'b> {
         }
         memory.grow(indices.count as u64 * 4)?;
         let corners = self.read(&indices, &Picked::All(indices.count), |a, i| a.index(i))?;
-        match corners.iter().position(|i| *i as usize >= count) {
+        match fill::position(&corners, self.cx, |i| *i as usize >= count) {
             Some(at) => {
                 let what = format!("index {at} is {}, but there are {count} vertices", corners[at]);
                 Err(Reason::malformed(place, what))
@@ -167,36 +169,44 @@ impl<'a, 'b> Primitives<'a, 'b> {
     /// Triangles of lists, strips and fans (glTF 2.0, section 3.7.2.1). What is left over is
     /// passed over.
     fn triangles(
-        &mut self,
+        &self,
         mode: Mode,
-        corners: Option<&[u32]>,
+        mut corners: Option<Vec<u32>>,
         count: usize,
         memory: &mut Charge,
     ) -> Result<Vec<[u32; 3]>, Reason> {
+        if matches!(mode, Mode::Triangles)
+            && let Some(list) = corners.take()
+        {
+            match bytemuck::try_cast_vec(list) {
+                Ok(triangles) => return Ok(triangles), // nothing is left over, as nearly always: no copy
+                Err((_, list)) => corners = Some(list),
+            }
+        }
+        let corners = corners.as_deref();
         let corner = |i: usize| corners.map_or(num::index(i), |corners| corners[i]);
         let corner_count = corners.map_or(count, <[u32]>::len);
         let n = if matches!(mode, Mode::Triangles) { corner_count / 3 } else { corner_count.saturating_sub(2) };
         memory.grow(n as u64 * 12)?;
-        let mut triangles = Vec::with_capacity(n);
-        for i in 0..n {
-            self.pace.step(12)?;
-            triangles.push(match mode {
-                Mode::TriangleStrip if i % 2 == 1 => [i, i + 2, i + 1].map(corner),
-                Mode::TriangleStrip => [i, i + 1, i + 2].map(corner),
-                Mode::TriangleFan => [i + 1, i + 2, 0].map(corner),
-                _ => [3 * i, 3 * i + 1, 3 * i + 2].map(corner),
-            });
-        }
-        Ok(triangles)
+        let triangle = |i: usize| match mode {
+            Mode::TriangleStrip if i % 2 == 1 => [i, i + 2, i + 1].map(corner),
+            Mode::TriangleStrip => [i, i + 1, i + 2].map(corner),
+            Mode::TriangleFan => [i + 1, i + 2, 0].map(corner),
+            _ => [3 * i, 3 * i + 1, 3 * i + 2].map(corner),
+        };
+        Ok(fill::list(n, 12, self.cx, |start, piece| (start..).zip(piece).for_each(|(i, to)| *to = triangle(i)))?)
     }
 
-    fn read<T>(&mut self, from: &Accessor, picked: &Picked, get: impl Fn(&Accessor, usize) -> T) -> Result<Vec<T>, Reason> {
-        let mut list = Vec::with_capacity(picked.count());
-        for i in 0..picked.count() {
-            self.pace.step(size_of::<T>())?;
-            list.push(get(from, picked.source(i)));
-        }
-        Ok(list)
+    fn read<T: Zeroable + Send>(
+        &self,
+        from: &Accessor,
+        picked: &Picked,
+        get: impl Fn(&Accessor, usize) -> T + Sync,
+    ) -> Result<Vec<T>, Reason> {
+        let n = picked.count();
+        Ok(fill::list(n, size_of::<T>() as u64, self.cx, |start, piece| {
+            (start..).zip(piece).for_each(|(i, to)| *to = get(from, picked.source(i)));
+        })?)
     }
 
     fn material(&self, primitive: &Primitive, place: &str) -> Result<Option<usize>, Reason> {

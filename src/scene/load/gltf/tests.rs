@@ -269,6 +269,46 @@ fn primitives_that_share_a_long_list_take_what_they_use() {
     assert_eq!(scene.meshes[0].triangles, [[3, 0, 1], [0, 1, 2]]);
 }
 
+/// A long row of squares, as one reader of accessors takes it and as the other: tightly packed, with a
+/// stride, with an element that is replaced by itself, and with a last index that makes no triangle.
+#[test]
+fn every_road_gives_the_same() {
+    let n = 50_000u16;
+    let positions: Vec<[f32; 3]> =
+        (0..n).map(|i| [f32::from(i / 2), f32::from(i % 2), f32::from_bits(u32::from(i) << 15)]).collect();
+    let indices: Vec<u32> = (0..u32::from(n) - 2).flat_map(|i| [i + i % 2, i + 1 - i % 2, i + 2]).collect();
+    let with = |stride: usize, replaced: bool, left_over: usize, short: bool| {
+        let mut model = Model::square();
+        let apart: Vec<u8> = positions.iter().flat_map(|p| [bytemuck::bytes_of(p), &vec![7; stride - 12]].concat()).collect();
+        let view = model.view(&apart);
+        model.json["bufferViews"][view]["byteStride"] = json!(stride);
+        let mut accessor = json!({"bufferView": view, "componentType": FLOAT, "type": "VEC3", "count": n});
+        if replaced {
+            let at = model.view(bytemuck::cast_slice(&[7u16]));
+            let by = model.view(bytemuck::cast_slice(&[positions[7]]));
+            let indices = json!({"bufferView": at, "componentType": USHORT});
+            accessor["sparse"] = json!({"count": 1, "indices": indices, "values": {"bufferView": by}});
+        }
+        let vertices = model.accessor(accessor);
+        let all = [&indices, &indices[..left_over]].concat();
+        let corners = if short {
+            model.indices(&Vec::from_iter(all.iter().map(|i| u16::try_from(*i).expect("few"))))
+        } else {
+            let view = model.view(bytemuck::cast_slice(&all));
+            model.accessor(json!({"bufferView": view, "componentType": 5125, "type": "SCALAR", "count": all.len()}))
+        };
+        read(&model.with(json!({"attributes": {"POSITION": vertices, "NORMAL": vertices}, "indices": corners})).glb())
+    };
+    let scene = with(12, false, 0, false);
+    assert!(bytemuck::cast_slice::<_, [u32; 3]>(&scene.meshes[0].positions) == bytemuck::cast_slice::<_, [u32; 3]>(&positions));
+    assert!(scene.meshes[0].triangles.as_flattened() == indices);
+    for (stride, replaced, left_over, short) in
+        [(12, true, 0, true), (12, false, 1, false), (20, false, 2, true), (20, true, 1, false)]
+    {
+        assert!(with(stride, replaced, left_over, short).meshes == scene.meshes, "{stride} {replaced} {left_over} {short}");
+    }
+}
+
 #[test]
 fn buffers_beside_the_model_have_escaped_names() {
     let mut model = Model::square().with(json!({"attributes": {"POSITION": 0}}));
