@@ -9,6 +9,11 @@ use crate::task::Charge;
 /// Faces between two charges to the budget.
 const BATCH: usize = 1 << 12;
 
+/// Which property holds the indices.
+pub(super) fn list_of(element: &Element) -> Option<usize> {
+    element.fields.iter().position(|f| matches!(f.name.as_str(), "vertex_indices" | "vertex_index"))
+}
+
 /// Reads every face of `element`, whose indices must be below `vertex_count`.
 pub(super) fn read(
     element: &Element,
@@ -17,8 +22,7 @@ pub(super) fn read(
     mesh: &mut Mesh,
     memory: &mut Charge,
 ) -> Result<(), Reason> {
-    let list = element.fields.iter().position(|f| matches!(f.name.as_str(), "vertex_indices" | "vertex_index"));
-    let Some(list) = list else {
+    let Some(list) = list_of(element) else {
         return Err(Reason::malformed("header", format_args!("the element {} has no vertex_indices", element.name)));
     };
     let strip = element.name == "tristrips";

@@ -7,6 +7,8 @@
 mod faces;
 mod header;
 mod payload;
+mod records;
+mod triangles;
 mod vertices;
 
 use super::{Loader, Siblings, mesh_bytes};
@@ -48,8 +50,12 @@ fn elements(header: &Header, mut payload: impl Payload, cx: &LoadCx) -> Result<M
     for element in header.elements.iter().filter(|e| e.count > 0 && !e.fields.is_empty()) {
         payload.enough_for(element)?;
         match element.name.as_str() {
-            "vertex" => vertices::read(element, &mut payload, &mut mesh, &mut memory)?,
-            "face" | "tristrips" => faces::read(element, &mut payload, vertex_count, &mut mesh, &mut memory)?,
+            "vertex" => vertices::read(element, &mut payload, &mut mesh, &mut memory, cx)?,
+            "face" | "tristrips" => {
+                if !triangles::read(element, &mut payload, vertex_count, &mut mesh, cx)? {
+                    faces::read(element, &mut payload, vertex_count, &mut mesh, &mut memory)?;
+                }
+            }
             _ => skip(element, &mut payload)?,
         }
     }

@@ -20,6 +20,14 @@ pub(super) trait Payload {
     /// The length of a list whose items are of `item`, which the bytes that are left can hold.
     fn length(&mut self, count: &ScalarType, item: &ScalarType) -> Result<usize, Reason>;
 
+    /// The bytes that are left, where they are binary and little endian.
+    fn little_endian(&self) -> Option<&[u8]> {
+        None
+    }
+
+    /// Passes over so many of [`Self::little_endian`].
+    fn pass(&mut self, _: usize) {}
+
     /// What is wrong here.
     fn error(&self, what: String) -> Reason;
 
@@ -179,6 +187,14 @@ impl<const BIG: bool> Payload for Binary<'_, BIG> {
         }
         self.pace.step(bytes)?;
         Ok(length)
+    }
+
+    fn little_endian(&self) -> Option<&[u8]> {
+        (!BIG).then(|| &self.bytes[self.at..])
+    }
+
+    fn pass(&mut self, bytes: usize) {
+        self.at = self.bytes.len().min(self.at + bytes);
     }
 
     fn skip(&mut self, field: &Field) -> Result<(), Reason> {

@@ -111,3 +111,79 @@ fn headers_end_their_lines_in_any_way() {
         assert_eq!(scene.meshes[0].positions[9], Vec3::splat(10.0));
     }
 }
+
+/// A row of triangles, with every attribute, in so many vertices of which each follows the one before.
+fn row(format: &str, n: u32, change: impl Fn(u32, &mut [u32])) -> Vec<u8> {
+    let lines = [
+        &format!("element vertex {n}"),
+        "property double x\nproperty float y\nproperty short z\nproperty float nx\nproperty float ny\nproperty float nz",
+        "property float s\nproperty float t\nproperty uchar red\nproperty ushort green\nproperty float blue\nproperty float u",
+        &format!("element face {}", n - 2),
+        "property uchar flag\nproperty list uchar int vertex_indices\nproperty short last",
+    ];
+    let (mut file, big) = (header(format, &lines), format.contains("big"));
+    let mut put = |bytes: &[u8]| if big { file.extend(bytes.iter().rev()) } else { file.extend(bytes) };
+    for i in 0..n {
+        let [low, middle, ..] = i.to_le_bytes();
+        put(&(f64::from(i) * 0.1).to_le_bytes());
+        put(&f32::from_bits(0x3F80_0000 | i << 3).to_le_bytes());
+        put(&[low, middle]);
+        [0.5, -1.5, 1e-40, 0.25, f32::NAN].iter().for_each(|x: &f32| put(&x.to_le_bytes()));
+        put(&[low]);
+        put(&[middle, low]);
+        [f32::from(low) / 300.0, f32::from(middle)].iter().for_each(|x| put(&x.to_le_bytes()));
+    }
+    for i in 0..n - 2 {
+        let mut corners = vec![i, i + 2, i + 1, i];
+        change(i, &mut corners);
+        let count = if corners[3] == i { 3 } else { 4 };
+        put(&[9]);
+        put(&[count]);
+        corners.iter().take(usize::from(count)).for_each(|c| put(&c.to_le_bytes()));
+        put(&[1, 2]);
+    }
+    file
+}
+
+#[test]
+fn every_road_gives_the_same() {
+    // The slow road is that of the other byte order.
+    let both = |n: u32, change: &dyn Fn(u32, &mut [u32])| {
+        let [quick, slow] = ["binary_little_endian", "binary_big_endian"].map(|format| load(&Ply, &row(format, n, change)));
+        match (quick, slow) {
+            (Ok(quick), Ok(slow)) => {
+                let bits = |scene: &Scene| bytemuck::cast_slice::<_, u32>(&scene.meshes[0].uvs).to_vec();
+                assert!(bits(&quick) == bits(&slow) && quick.meshes[0].positions == slow.meshes[0].positions);
+                assert!(quick.meshes[0].normals == slow.meshes[0].normals && quick.meshes[0].colors == slow.meshes[0].colors);
+                assert!(quick.meshes[0].triangles == slow.meshes[0].triangles);
+                Ok(quick.meshes[0].triangles.len())
+            }
+            (quick, slow) => {
+                let [quick, slow] = [quick, slow].map(|read| read.expect_err("both are wrong").to_string());
+                assert_eq!(quick, slow);
+                Err(quick)
+            }
+        }
+    };
+    for n in [3, 4, 80_000] {
+        assert_eq!(both(n, &|_, _| ()), Ok(n as usize - 2));
+        assert_eq!(
+            both(n, &|i, corners| if i == n - 3 {
+                corners[3] = i + 1
+            }),
+            Ok(n as usize - 1),
+            "one quadrangle"
+        );
+        for wrong in [n, 1 << 31, u32::MAX] {
+            let error = both(n, &|i, corners| {
+                if i == n / 2 - 1 {
+                    corners[1] = wrong
+                }
+            });
+            assert!(
+                error.as_ref().is_err_and(|e| e.starts_with(&format!("face {}: there is no vertex", n / 2 - 1))),
+                "{error:?}"
+            );
+        }
+    }
+}

@@ -2,11 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
-use super::header::{Element, ScalarType, Shape};
+use super::header::{Element, ScalarType, Shape, size};
 use super::payload::Payload;
+use super::records::{Column, Records};
 use crate::geometry::num;
 use crate::scene::load::{linear_from_srgb, unit};
-use crate::scene::{Mesh, Reason};
+use crate::scene::{LoadCx, Mesh, Reason};
 use crate::task::Charge;
 
 /// What a property means to us; the number is the axis or channel.
@@ -46,13 +47,68 @@ impl Layout {
     fn bytes(&self) -> u64 {
         12 + if self.normals { 12 } else { 0 } + if self.uvs { 8 } else { 0 } + if self.colors { 16 } else { 0 }
     }
+
+    /// Reads every vertex by the quick road, one attribute after the other.
+    fn read_records(&self, element: &Element, records: &Records, mesh: &mut Mesh, cx: &LoadCx) -> Result<(), Reason> {
+        let [x, y, z] = self.columns(element, |m| if let Meaning::Position(axis) = m { Some((axis, 1.0)) } else { None });
+        let value = |column: Option<(Column, f32)>, record: &[u8]| column.map_or(0.0, |(column, _)| column.value(record, cx));
+        mesh.positions = records.list(records.size, cx, |r| Vec3::new(value(x, r), value(y, r), value(z, r)))?;
+        if self.normals {
+            let [x, y, z] = self.columns(element, |m| if let Meaning::Normal(axis) = m { Some((axis, 1.0)) } else { None });
+            mesh.normals = records.list(0, cx, |r| Vec3::new(value(x, r), value(y, r), value(z, r)))?;
+        }
+        if self.uvs {
+            let [u, v] = self.columns(element, |m| if let Meaning::Uv(axis) = m { Some((axis, 1.0)) } else { None });
+            mesh.uvs = records.list(0, cx, |r| Vec2::new(value(u, r), value(v, r)))?;
+        }
+        if self.colors {
+            let rgba: [_; 4] =
+                self.columns(element, |m| if let Meaning::Color(channel, scale) = m { Some((channel, scale)) } else { None });
+            let opaque = [0.0, 0.0, 0.0, 1.0];
+            mesh.colors = records.list(0, cx, |r| {
+                let channel = |c: usize| rgba[c].map_or(opaque[c], |(column, scale)| column.value(r, cx) * scale);
+                linear([0, 1, 2, 3].map(channel))
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Where the axes of an attribute are, and what scales them; the last of several, as when one is read
+    /// after the other.
+    fn columns<'a, const N: usize>(
+        &self,
+        element: &'a Element,
+        axis: impl Fn(Meaning) -> Option<(usize, f32)>,
+    ) -> [Option<(Column<'a>, f32)>; N] {
+        let (mut columns, mut offset) = ([None; N], 0);
+        for (field, meaning) in element.fields.iter().zip(&self.meanings) {
+            let (Shape::One(kind) | Shape::List { count: kind, .. }) = &field.shape;
+            if let Some((axis, scale)) = meaning.and_then(&axis) {
+                columns[axis] = Some((Column { offset, kind }, scale));
+            }
+            offset += size(kind);
+        }
+        columns
+    }
 }
 
 /// Reads every vertex of `element`.
-pub(super) fn read(element: &Element, payload: &mut impl Payload, mesh: &mut Mesh, memory: &mut Charge) -> Result<(), Reason> {
+pub(super) fn read(
+    element: &Element,
+    payload: &mut impl Payload,
+    mesh: &mut Mesh,
+    memory: &mut Charge,
+    cx: &LoadCx,
+) -> Result<(), Reason> {
     element.check_count("vertices")?;
     let layout = Layout::of(element)?;
     memory.grow(element.count as u64 * layout.bytes())?;
+    if let Some(records) = payload.little_endian().and_then(|bytes| Records::of_scalars(element, bytes)) {
+        layout.read_records(element, &records, mesh, cx)?;
+        let read = records.bytes.len();
+        payload.pass(read);
+        return Ok(());
+    }
     for i in 0..element.count {
         payload.begin(element, i)?;
         let (mut position, mut normal, mut uv, mut color) = (Vec3::ZERO, Vec3::ZERO, Vec2::ZERO, [0.0, 0.0, 0.0, 1.0]);
@@ -72,13 +128,14 @@ pub(super) fn read(element: &Element, payload: &mut impl Payload, mesh: &mut Mes
         mesh.positions.push(position);
         layout.normals.then(|| mesh.normals.push(normal));
         layout.uvs.then(|| mesh.uvs.push(uv));
-        layout.colors.then(|| {
-            let [red, green, blue, alpha] = color;
-            let [r, g, b] = linear_from_srgb([red, green, blue]);
-            mesh.colors.push([r, g, b, unit(alpha)]);
-        });
+        layout.colors.then(|| mesh.colors.push(linear(color)));
     }
     Ok(())
+}
+
+fn linear([red, green, blue, alpha]: [f32; 4]) -> [f32; 4] {
+    let [r, g, b] = linear_from_srgb([red, green, blue]);
+    [r, g, b, unit(alpha)]
 }
 
 /// By the names that the usual programs write. Colours of whole numbers fill their range, as a
