@@ -11,6 +11,30 @@ use crate::task::Cancelled;
 /// Items between two looks at the cancel flag: a millisecond, where an item takes 30 ns.
 pub(super) const PIECE: usize = 1 << 15;
 
+/// Why a list is not to be had by a quick road.
+pub(super) enum Stop {
+    Cancelled(Cancelled),
+    /// Something is unusual, or wrong: the slow road is to look at it.
+    Unusual,
+}
+
+impl From<Cancelled> for Stop {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::Cancelled(cancelled)
+    }
+}
+
+impl Stop {
+    /// What was made, or `None` where the slow road is to be taken.
+    pub fn or_slow_road<T>(made: Result<T, Self>) -> Result<Option<T>, Cancelled> {
+        match made {
+            Ok(made) => Ok(Some(made)),
+            Err(Self::Unusual) => Ok(None),
+            Err(Self::Cancelled(cancelled)) => Err(cancelled),
+        }
+    }
+}
+
 /// A list of `n` items. `fill` gets a piece of it, and where in the list that begins. Each item counts as
 /// `units` of progress. The caller has charged the budget for the list, and made sure that the file backs
 /// its length.

@@ -1,12 +1,11 @@
 //! The quick road for faces: binary, and all of them triangles, as most large files are.
 
 use super::faces::list_of;
-use super::header::{Element, ScalarType, Shape, size};
+use super::header::{Element, Field, ScalarType, Shape, size};
 use super::payload::Payload;
 use super::records::Records;
-use crate::scene::load::fill;
+use crate::scene::load::fill::{self, Stop};
 use crate::scene::{LoadCx, Mesh, Reason};
-use crate::task::Cancelled;
 
 /// Where the indices are in a face.
 struct Layout {
@@ -18,19 +17,6 @@ struct Layout {
     indices: usize,
     /// The indices are below this.
     limit: usize,
-}
-
-/// Why it is not to be had this way.
-enum Stop {
-    Cancelled(Cancelled),
-    /// A polygon, or an index that is too large, for the slow road to look at.
-    Other,
-}
-
-impl From<Cancelled> for Stop {
-    fn from(cancelled: Cancelled) -> Self {
-        Self::Cancelled(cancelled)
-    }
 }
 
 /// Reads the faces, if each is a triangle. If it returns `false` nothing has happened.
@@ -46,11 +32,8 @@ pub(super) fn read(
     let Some((records, layout)) = records.filter(|_| mesh.triangles.is_empty()) else { return Ok(false) };
     let _memory = cx.budget.charge(element.count as u64 * 12)?;
     let triangles = fill::try_list(element.count, layout.size as u64, cx, |start, piece| layout.fill(&records, start, piece));
-    match triangles {
-        Ok(triangles) => mesh.triangles = triangles,
-        Err(Stop::Cancelled(cancelled)) => return Err(cancelled.into()),
-        Err(Stop::Other) => return Ok(false),
-    }
+    let Some(triangles) = Stop::or_slow_road(triangles)? else { return Ok(false) };
+    mesh.triangles = triangles;
     let read = records.bytes.len();
     payload.pass(read);
     Ok(true)
@@ -69,8 +52,8 @@ impl Layout {
         if matches!(count, ScalarType::Float | ScalarType::Double) {
             return None;
         }
-        let scalar = |field: &super::header::Field| if let Shape::One(kind) = &field.shape { Some(size(kind)) } else { None };
-        let sum = |fields: &[super::header::Field]| fields.iter().map(scalar).sum::<Option<usize>>();
+        let scalar = |field: &Field| if let Shape::One(kind) = &field.shape { Some(size(kind)) } else { None };
+        let sum = |fields: &[Field]| fields.iter().map(scalar).sum::<Option<usize>>();
         let (before, after) = (sum(&element.fields[..list])?, sum(&element.fields[list + 1..])?);
         let indices = before + size(count);
         Some(Self { size: indices + 12 + after, count: (before, size(count)), indices, limit })
@@ -83,11 +66,11 @@ impl Layout {
         let mut ok = true;
         for (to, record) in piece.iter_mut().zip(records.from(start)) {
             let (words, _) = record[self.indices..].as_chunks();
-            let Some(words) = words.first_chunk::<3>() else { return Err(Stop::Other) };
+            let Some(words) = words.first_chunk::<3>() else { return Err(Stop::Unusual) };
             *to = words.map(u32::from_le_bytes);
             ok &= record[at] == 3 && (bytes == 1 || record[at..].starts_with(&THREE[..bytes]));
             ok &= to.iter().all(|i| (*i as usize) < self.limit);
         }
-        if ok { Ok(()) } else { Err(Stop::Other) }
+        if ok { Ok(()) } else { Err(Stop::Unusual) }
     }
 }

@@ -5,9 +5,15 @@
 //! refuses coordinates that are not finite, which Boxwood keeps and counts. The tests use it to
 //! check this reader.
 
+mod facets;
+mod marks;
+mod table;
+
 use std::collections::HashMap;
 
 use glam::Vec3;
+
+use facets::Facets;
 
 use super::pace::Pace;
 use super::text::{Line, Lines, float, lossy, shown};
@@ -75,8 +81,18 @@ fn read_binary(bytes: &[u8], weld: &mut Weld, cx: &LoadCx) -> Result<(), Reason>
     if body.len() / FACET > count {
         weld.warnings.push(format!("{} bytes after the last triangle were left out.", body.len() - count * FACET));
     }
+    let facets = &body[..count * FACET];
+    match Facets(facets).weld(cx)? {
+        Some(mesh) => weld.mesh = mesh,
+        None => weld_in_turn(facets, weld, cx)?,
+    }
+    Ok(())
+}
+
+/// One facet after the other: the slow road.
+fn weld_in_turn(facets: &[u8], weld: &mut Weld, cx: &LoadCx) -> Result<(), Reason> {
     let mut pace = Pace::new(cx);
-    for facet in body.chunks_exact(FACET).take(count) {
+    for facet in facets.chunks_exact(FACET) {
         pace.step(FACET)?;
         let float = |i: usize| facet[i * 4..].first_chunk().map_or(f32::NAN, |b| f32::from_le_bytes(*b));
         weld.add([3, 6, 9].map(|i| Vec3::new(float(i), float(i + 1), float(i + 2))))?;
@@ -128,6 +144,12 @@ fn corner(line: &Line) -> Result<Vec3, Reason> {
         float(word).ok_or_else(|| line.error(format_args!("{} is no number", shown(word))))
     };
     Ok(Vec3::new(next()?, next()?, next()?))
+}
+
+/// What makes two corners one: the bits of their position. -0 + 0 is 0.
+#[inline(always)]
+fn key(p: Vec3) -> [u32; 3] {
+    p.to_array().map(|x| (x + 0.0).to_bits())
 }
 
 /// Vertices by the bits of their position, so that a NaN is equal to itself. Many tables and not
@@ -184,7 +206,7 @@ impl Weld {
     }
 
     fn index(&mut self, p: Vec3) -> u32 {
-        let key = p.to_array().map(|x| (x + 0.0).to_bits()); // -0 + 0 is 0
+        let key = key(p);
         let positions = &mut self.mesh.positions;
         *self.known.table(key).entry(key).or_insert_with(|| {
             positions.push(p);
@@ -273,6 +295,39 @@ mod tests {
         assert_eq!(error("solid a\nvertex 1 2 3\nendloop\n"), "line 3: a facet has three corners, this one 1");
         assert_eq!(error("solid a\nvertex 1 2 3\n"), "line 1: this solid ends within a facet: the file was cut short");
         assert_eq!(error("solid a\nbanana\n"), "line 2: 'banana' is no word of an STL file");
+    }
+
+    /// Facets of grids of all sizes, with holes in them, of soups, and of one point.
+    #[test]
+    fn every_road_welds_the_same() {
+        let grid = |i: u32, n: u32| [(i % n) as f32 * 0.5 - 0.0, (i / n) as f32, if i.is_multiple_of(7) { -0.0 } else { 0.0 }];
+        let quads = |count: u32, n: u32| -> Vec<[f32; 9]> {
+            let triangles = (0..count).flat_map(|i| [[i, i + 1, i + n], [i + n + 1, i + n, i + 1]]);
+            triangles.map(|t| bytemuck::cast(t.map(|i| grid(i, n)))).collect()
+        };
+        let soup = |count: u32| -> Vec<[f32; 9]> {
+            (0..count).map(|i| std::array::from_fn(|k| f32::from_bits((i * 9 + k as u32).wrapping_mul(0x9E37_79B9)))).collect()
+        };
+        let cases = [
+            quads(0, 2),
+            quads(1, 2),
+            quads(100, 10),
+            quads(50_000, 300),
+            soup(1),
+            soup(300),
+            soup(60_000),
+            vec![[1.5; 9]; 40_000],
+        ];
+        for facets in cases {
+            let file = binary(b"", u32::try_from(facets.len()).expect("few"), &facets);
+            let cx = LoadCx::unattended();
+            let mut weld = Weld::new(&cx).expect("memory");
+            weld_in_turn(&file[HEADER..], &mut weld, &cx).expect("facets");
+            let mesh = Facets(&file[HEADER..]).weld(&cx).expect("facets").expect("a table that is not filled badly");
+            assert!(mesh.triangles == weld.mesh.triangles, "{} facets", facets.len());
+            let bits = |mesh: &Mesh| bytemuck::cast_slice::<_, u32>(&mesh.positions).to_vec();
+            assert!(bits(&mesh) == bits(&weld.mesh));
+        }
     }
 
     #[test]
