@@ -3,9 +3,9 @@
 //!
 //! ```text
 //! corners    a b c   b d c   c d e        the file
-//! slots      5 2 7   2 4 7   7 4 1        a table finds one slot for equal corners, and the first corner there
-//! first      * * *   . * .   . . *        which a mark is put at; the vertex is the number of marks before it
-//! vertices   0 1 2   1 3 2   2 3 4
+//! equals     0 1 2   1 4 2   2 4 8        a table finds an equal corner, in the end the first
+//! first      * * *   . * .   . . *        which a mark is put at
+//! vertices   0 1 2   1 3 2   2 3 4        the number of marks before it
 //! ```
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use glam::Vec3;
 
 use super::marks::Marks;
-use super::table::{Key, Table};
+use super::table::{Key, Place, Table};
 use super::{FACET, key};
 use crate::geometry::num;
 use crate::scene::load::fill::{self, Stop};
@@ -22,6 +22,9 @@ use crate::scene::{LoadCx, Mesh, Reason};
 /// Whole facets.
 #[derive(Clone, Copy)]
 pub(super) struct Facets<'a>(pub &'a [u8]);
+
+/// Corners that are looked for at once: those of eight facets.
+const AHEAD: usize = 24;
 
 /// Of a facet's bytes, what finding slots counts as; numbering is the rest.
 const FINDING: usize = FACET * 3 / 5;
@@ -66,34 +69,49 @@ impl Facets<'_> {
         let corners = self.count() * 3;
         let mut memory = cx.budget.charge(Table::bytes(slots) + Marks::bytes(corners) + self.count() as u64 * 12)?;
         let mut table = Table::new(slots);
-        let Some(mut triangles) = Stop::or_slow_road(self.slots(&table, slots / 4 * 3, cx))? else { return Ok(None) };
+        let Some(mut triangles) = Stop::or_slow_road(self.equals(&table, slots / 4 * 3, cx))? else { return Ok(None) };
         let marks = Marks::of(&mut table, corners, cx)?;
         memory.grow(marks.count() as u64 * 12)?;
         let positions = marks.positions(cx, |corner| self.position(corner))?;
         fill::each_piece(&mut triangles, cx, |_, piece: &mut [[u32; 3]]| {
-            piece.as_flattened_mut().iter_mut().for_each(|slot| *slot = marks.rank(table.first(*slot)));
+            piece.as_flattened_mut().iter_mut().for_each(|equal| *equal = self.vertex(*equal, &marks, &table));
             cx.progress.advance((piece.len() * (FACET - FINDING)) as u64);
             Ok::<_, Reason>(())
         })?;
         Ok(Some(Mesh { positions, triangles, ..Mesh::default() }))
     }
 
-    /// The slots of the three corners of each facet, of which no more than about `most` are taken.
-    fn slots(self, table: &Table, most: usize, cx: &LoadCx) -> Result<Vec<[u32; 3]>, Stop> {
+    /// For each corner of each facet one at the same position: the first, or one that was entered before it. No
+    /// more than about `most` positions.
+    fn equals(self, table: &Table, most: usize, cx: &LoadCx) -> Result<Vec<[u32; 3]>, Stop> {
         let all_taken = AtomicUsize::new(0);
         fill::try_list(self.count(), FINDING as u64, cx, |start, piece: &mut [[u32; 3]]| {
             if all_taken.load(Relaxed) > most {
                 return Err(Stop::Unusual);
             }
             let mut taken = 0;
-            for (corner, to) in (num::index(3 * start)..).zip(piece.as_flattened_mut()) {
-                let found = table.insert(corner, self.key(corner), |other| self.key(other));
-                let (slot, new) = found.ok_or(Stop::Unusual)?;
-                *to = slot;
-                taken += usize::from(new);
+            for (i, group) in piece.as_flattened_mut().chunks_mut(AHEAD).enumerate() {
+                let first = num::index(3 * start + i * AHEAD);
+                let mut ahead = [(Key::default(), Place::default()); AHEAD];
+                for (corner, (key, place)) in (first..).zip(&mut ahead[..group.len()]) {
+                    *key = self.key(corner);
+                    *place = table.look(*key);
+                }
+                for ((corner, equal), (key, place)) in (first..).zip(group).zip(&ahead) {
+                    *equal = table.enter(corner, *key, *place, |other| self.key(other)).ok_or(Stop::Unusual)?;
+                    taken += usize::from(*equal == corner);
+                }
             }
             all_taken.fetch_add(taken, Relaxed);
             Ok(())
         })
+    }
+
+    /// The vertex of a corner that is equal to this one. It nearly always is the first, which is near in the
+    /// file and so in the marks, while a look at the table would take long.
+    #[inline(always)]
+    fn vertex(self, equal: u32, marks: &Marks, table: &Table) -> u32 {
+        let first = if marks.has(equal) { equal } else { table.first(self.key(equal), |other| self.key(other)) };
+        marks.rank(first)
     }
 }

@@ -48,6 +48,12 @@ impl Marks {
         self.count as usize
     }
 
+    /// Whether a corner has one.
+    #[inline(always)]
+    pub fn has(&self, corner: u32) -> bool {
+        self.words[corner as usize / 64].load(Relaxed) >> (corner % 64) & 1 == 1
+    }
+
     /// How many are before a corner.
     #[inline(always)]
     pub fn rank(&self, corner: u32) -> u32 {

@@ -23,6 +23,14 @@ const MOST_PROBES: usize = 1 << 9;
 /// without a look at the file.
 pub(super) struct Table(Vec<AtomicU64>);
 
+/// Where the search for a position begins, and what was there.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Place {
+    at: usize,
+    tag: u32,
+    seen: u64,
+}
+
 impl Table {
     /// Bytes of a table with so many slots.
     pub const fn bytes(slots: usize) -> u64 {
@@ -34,36 +42,53 @@ impl Table {
         Self(zeros_in_large_pages(slots))
     }
 
-    /// Finds or takes the slot for a corner at `key`; `key_of` tells that of the other corners. Also whether it
-    /// was taken. `None` if there is no slot near where it should be.
+    /// Where to look for a position, and what is there now. Looking for several ahead of the rest lets the
+    /// memory answer them all at once.
     #[inline(always)]
-    pub fn insert(&self, corner: u32, key: Key, key_of: impl Fn(u32) -> Key) -> Option<(u32, bool)> {
-        let (mut at, tag) = place(key, self.0.len());
+    pub fn look(&self, key: Key) -> Place {
+        let (at, tag) = place(key, self.0.len());
+        Place { at, tag, seen: self.0[at].load(Relaxed) }
+    }
+
+    /// Enters a corner. Returns a corner at its position, which the slot named a moment ago: itself if the slot
+    /// was free. `None` if there is no slot near where it should be. `key_of` tells what others are at.
+    #[inline(always)]
+    pub fn enter(&self, corner: u32, key: Key, place: Place, key_of: impl Fn(u32) -> Key) -> Option<u32> {
+        let Place { mut at, tag, mut seen } = place;
         let mine = u64::from(!corner) << 32 | u64::from(tag);
         for _ in 0..MOST_PROBES {
-            let slot = self.0.get(at)?;
-            let mut seen = slot.load(Relaxed);
             if seen == 0 {
-                match slot.compare_exchange(0, mine, Relaxed, Relaxed) {
-                    Ok(_) => return Some((num::index(at), true)),
+                match self.0[at].compare_exchange(0, mine, Relaxed, Relaxed) {
+                    Ok(_) => return Some(corner),
                     Err(other) => seen = other,
                 }
             }
             if low(seen) == tag && key_of(corner_in(seen)) == key {
                 if seen < mine {
-                    slot.fetch_max(mine, Relaxed);
+                    self.0[at].fetch_max(mine, Relaxed);
                 }
-                return Some((num::index(at), false));
+                return Some(corner_in(seen));
             }
-            at = if at + 1 == self.0.len() { 0 } else { at + 1 };
+            at = self.after(at);
+            seen = self.0[at].load(Relaxed);
         }
         None
     }
 
-    /// The first corner at the position of a slot.
+    /// The first corner at a position that was entered.
+    pub fn first(&self, key: Key, key_of: impl Fn(u32) -> Key) -> u32 {
+        let Place { mut at, tag, mut seen } = self.look(key);
+        let mut probes = 0..MOST_PROBES;
+        while probes.next().is_some() && !(low(seen) == tag && seen != 0 && key_of(corner_in(seen)) == key) {
+            at = self.after(at);
+            seen = self.0[at].load(Relaxed);
+        }
+        corner_in(seen)
+    }
+
     #[inline(always)]
-    pub fn first(&self, slot: u32) -> u32 {
-        corner_in(self.0[slot as usize].load(Relaxed))
+    fn after(&self, at: usize) -> usize {
+        if at + 1 == self.0.len() { 0 } else { at + 1 }
     }
 
     /// Tells the first corner of every slot that is taken, in no order.
@@ -94,4 +119,34 @@ fn place([x, y, z]: Key, slots: usize) -> (usize, u32) {
     let b = (a ^ a >> 32 ^ u64::from(z)).wrapping_mul(0xD6E8_FEB8_6659_FD93);
     let at = (u64::from(low(b >> 32)) * slots as u64) >> 32;
     (usize::try_from(at).unwrap_or(0), low(b ^ b >> 29))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_corner_is_the_first_whoever_came_first() {
+        let key_of = |corner: u32| [corner % 100, 1, 2];
+        let mut table = Table::new(150);
+        for corner in (0..1000).rev() {
+            let key = key_of(corner);
+            let equal = table.enter(corner, key, table.look(key), key_of).expect("there is room");
+            assert!(equal % 100 == corner % 100 && (equal == corner) == (corner >= 900));
+        }
+        assert!((0..1000).all(|corner| table.first(key_of(corner), key_of) == corner % 100));
+        let told = std::sync::Mutex::new(Vec::new());
+        table.each_first(&LoadCx::unattended(), |corner| told.lock().expect("no panic").push(corner)).expect("nobody cancels");
+        let mut told = told.into_inner().expect("no panic");
+        told.sort_unstable();
+        assert_eq!(told, Vec::from_iter(0..100));
+    }
+
+    #[test]
+    fn a_full_table_says_so() {
+        let table = Table::new(10);
+        let enter = |corner: u32| table.enter(corner, [corner; 3], table.look([corner; 3]), |other| [other; 3]);
+        assert!((0..10).all(|corner| enter(corner) == Some(corner)));
+        assert_eq!((enter(10), enter(3)), (None, Some(3)));
+    }
 }
