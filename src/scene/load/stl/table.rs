@@ -6,7 +6,6 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use crate::geometry::num;
 use crate::scene::LoadCx;
 use crate::scene::load::fill;
 use crate::sys::zeros_in_large_pages;
