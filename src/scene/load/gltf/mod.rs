@@ -16,6 +16,7 @@ mod materials;
 mod nodes;
 mod picked;
 mod primitive;
+mod repeats;
 mod textures;
 mod uri;
 
@@ -44,8 +45,8 @@ impl Loader for Gltf {
         let parts = container::open(bytes)?;
         let (root, _memory) = document::parse(parts.json, cx)?;
         let mut warnings = extensions::check(&root)?;
-        let nodes::Walked { placements, camera } = nodes::walk(&root, &mut warnings)?;
         let buffers = Buffers::new(&root, parts.bin, files, cx)?;
+        let nodes::Walked { placements, camera, _memory } = nodes::walk(&root, &buffers, &mut warnings, cx)?;
         let camera = camera.map(FirstView::Stored);
         let mut scene = Scene { materials: materials::all(&root), up: Vec3::Y, camera, warnings, ..Scene::default() };
         let meshes = meshes(&root, &buffers, &placements, &mut scene, cx)?;

@@ -4,8 +4,11 @@ use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A, Vec3A};
 use gltf::json::scene::Node;
 use gltf::json::{Index, Root};
 
+use super::buffers::Buffers;
 use super::cameras::Cameras;
-use crate::scene::{Reason, StoredCamera};
+use super::repeats;
+use crate::scene::{LoadCx, Reason, StoredCamera};
+use crate::task::Charge;
 
 /// A mesh of the document, and where it stands.
 pub(super) type Placement = (usize, Affine3A);
@@ -16,10 +19,13 @@ pub(super) struct Walked {
     pub placements: Vec<Placement>,
     /// The first camera that makes a picture.
     pub camera: Option<StoredCamera>,
+    /// Of repeated meshes: a short file may repeat a long list many times.
+    pub _memory: Charge,
 }
 
 /// Walks the scene depth first. Transforms are multiplied in 64 bits and rounded once.
-pub(super) fn walk(root: &Root, warnings: &mut Vec<String>) -> Result<Walked, Reason> {
+pub(super) fn walk(root: &Root, buffers: &Buffers, warnings: &mut Vec<String>, cx: &LoadCx) -> Result<Walked, Reason> {
+    let mut memory = cx.budget.charge(0)?;
     let mut placements = Vec::new();
     // A stack of our own: a chain of nodes may be as long as the file.
     let mut stack: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
@@ -34,7 +40,13 @@ pub(super) fn walk(root: &Root, warnings: &mut Vec<String>) -> Result<Walked, Re
         let world_from_node = world_from_parent * transform(node);
         if let Some(mesh) = node.mesh {
             root.get(mesh).ok_or_else(|| Reason::malformed(&place, format_args!("there is no mesh {}", mesh.value())))?;
-            placements.push((mesh.value(), narrow(&world_from_node)));
+            match repeats::of(root, buffers, node, &place, cx)? {
+                None => placements.push((mesh.value(), narrow(&world_from_node))),
+                Some((repeated, _memory)) => {
+                    memory.grow((repeated.len() * size_of::<Placement>()) as u64)?;
+                    placements.extend(repeated.iter().map(|of_node| (mesh.value(), narrow(&(world_from_node * *of_node)))));
+                }
+            }
             left_out.count(node);
         }
         if let Some(camera) = node.camera {
@@ -47,7 +59,7 @@ pub(super) fn walk(root: &Root, warnings: &mut Vec<String>) -> Result<Walked, Re
         // Placed nowhere: show each once, where it is.
         placements.extend((0..root.meshes.len()).map(|mesh| (mesh, Affine3A::IDENTITY)));
     }
-    Ok(Walked { placements, camera: cameras.found })
+    Ok(Walked { placements, camera: cameras.found, _memory: memory })
 }
 
 /// The nodes that the walk begins with: of the default scene, or else the first, or else those
@@ -96,22 +108,18 @@ fn narrow(t: &DAffine3) -> Affine3A {
 struct LeftOut {
     skinned: usize,
     morphed: usize,
-    instanced: usize,
 }
 
 impl LeftOut {
     fn count(&mut self, node: &Node) {
-        let instanced = |e: &gltf::json::extensions::scene::Node| e.others.contains_key("EXT_mesh_gpu_instancing");
         self.skinned += usize::from(node.skin.is_some());
         self.morphed += usize::from(node.weights.as_ref().is_some_and(|w| w.iter().any(|w| *w != 0.0)));
-        self.instanced += usize::from(node.extensions.as_ref().is_some_and(instanced));
     }
 
     fn sentences(&self) -> impl Iterator<Item = String> + use<> {
         let left_out = [
             ("Meshes with a skeleton are shown as they were modelled", self.skinned),
             ("Meshes with morph targets are shown without them", self.morphed),
-            ("Meshes repeated by EXT_mesh_gpu_instancing are shown once", self.instanced),
         ];
         left_out.into_iter().filter(|(_, n)| *n > 0).map(|(what, n)| format!("{what}: {n}."))
     }

@@ -425,3 +425,44 @@ fn many_nodes_times_many_primitives_run_into_the_budget() {
     assert!(matches!(Gltf.load(&model.text(), &Beside(&[]), &cx), Err(Reason::Memory(_))));
     assert_eq!(cx.budget.used(), 0);
 }
+
+#[test]
+fn a_node_may_repeat_its_mesh() {
+    let repeated = |edit: &dyn Fn(&mut Value)| {
+        let mut model = Model::square();
+        let indices = model.indices(&[0, 1, 2]);
+        let at = model.view(bytemuck::cast_slice(&[[1f32, 0., 0.], [0., 2., 0.], [0., 0., 3.]]));
+        let at = model.accessor(json!({"bufferView": at, "componentType": FLOAT, "type": "VEC3", "count": 3}));
+        let turn = model.view(bytemuck::cast_slice(&[[0i16, 0, 0, i16::MAX], [0, 0, i16::MAX, 0], [0, 0, 0, i16::MAX]]));
+        let turn =
+            model.accessor(json!({"bufferView": turn, "componentType": SHORT, "normalized": true, "type": "VEC4", "count": 3}));
+        let mut model = model.with(json!({"attributes": {"POSITION": 0}, "indices": indices}));
+        let attributes = json!({"TRANSLATION": at, "ROTATION": turn, "_ID": 0});
+        model.json["nodes"] = json!([{
+            "mesh": 0, "scale": [2, 2, 2], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
+        }]);
+        model.json["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+        edit(&mut model.json);
+        load(&Gltf, &model.text())
+    };
+    let scene = repeated(&|_| ()).expect("a model");
+    let (o, x, y) = ([2., 0., 0.], [4., 0., 0.], [2., 2., 0.]);
+    assert_eq!(scene.instances.len(), 3);
+    assert_eq!((soup(&scene)[0], scene.meshes.len()), ([o, x, y], 1));
+    // Half a turn about z, then up by two, then twice as large.
+    assert_eq!(soup(&scene)[1], [[0., 4., 0.], [-2., 4., 0.], [0., 2., 0.]]);
+    let attributes = |json: &mut Value| json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"].take();
+    let wrong = repeated(&|json| {
+        let mut all = attributes(json);
+        all["TRANSLATION"] = json!(0);
+        json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = all;
+    });
+    assert!(wrong.expect_err("lists of two lengths").to_string().contains("not of one length"));
+    let missing = repeated(&|json| {
+        let mut all = attributes(json);
+        all["SCALE"] = json!(99);
+        json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = all;
+    });
+    assert!(missing.is_err());
+    assert_eq!(repeated(&|json| drop(attributes(json))).expect("nothing to repeat by").instances.len(), 1);
+}
