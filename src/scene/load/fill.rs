@@ -8,8 +8,11 @@ use super::LoadCx;
 use crate::sys::zeros_in_large_pages;
 use crate::task::Cancelled;
 
-/// Items between two looks at the cancel flag: a millisecond, where an item takes 30 ns.
-pub(super) const PIECE: usize = 1 << 15;
+/// Items between two looks at the cancel flag: a few milliseconds, where an item takes 500 ns.
+const PIECE: usize = 1 << 13;
+
+/// Waking the pool takes longer than to fill fewer, and models of many small meshes are common.
+const FEW: usize = 1 << 14;
 
 /// Why a list is not to be had by a quick road.
 pub(super) enum Stop {
@@ -71,9 +74,9 @@ pub(super) fn each_piece<T: Send, E: From<Cancelled> + Send>(
     cx: &LoadCx,
     work: impl Fn(usize, &mut [T]) -> Result<(), E> + Sync,
 ) -> Result<(), E> {
-    if list.len() <= PIECE {
+    if list.len() <= FEW {
         cx.cancel.check()?;
-        return work(0, list); // waking the pool takes longer, and models of many small meshes are common
+        return work(0, list);
     }
     let pieces = list.par_chunks_mut(PIECE).enumerate();
     cx.pool.run(|| {
@@ -86,7 +89,7 @@ pub(super) fn each_piece<T: Send, E: From<Cancelled> + Send>(
 
 /// Where in a list the first is that is `wanted`.
 pub(super) fn position<T: Sync>(list: &[T], cx: &LoadCx, wanted: impl Fn(&T) -> bool + Sync) -> Option<usize> {
-    if list.len() <= PIECE {
+    if list.len() <= FEW {
         return list.iter().position(wanted);
     }
     // Without a way out a piece is looked through several at a time.
@@ -111,7 +114,7 @@ mod tests {
     #[test]
     fn every_item_is_filled_once() {
         let cx = LoadCx::unattended();
-        for n in [0, 1, PIECE, PIECE + 1, 5 * PIECE + 7] {
+        for n in [0, 1, FEW, FEW + 1, 5 * PIECE + 7] {
             cx.progress.start("fill", 2 * n as u64);
             let fill = |start: usize, piece: &mut [u64]| (start as u64..).zip(piece).for_each(|(i, x)| *x += i + 1);
             let list = list(n, 2, &cx, fill).expect("nobody cancels");

@@ -23,8 +23,8 @@ use crate::scene::{LoadCx, Mesh, Reason};
 #[derive(Clone, Copy)]
 pub(super) struct Facets<'a>(pub &'a [u8]);
 
-/// Corners that are looked for at once: those of eight facets.
-const AHEAD: usize = 24;
+/// Corners that are looked for at once: those of sixteen facets.
+const AHEAD: usize = 48;
 
 /// Of a facet's bytes, what finding slots counts as; numbering is the rest.
 const FINDING: usize = FACET * 3 / 5;
@@ -95,8 +95,9 @@ impl Facets<'_> {
                 let mut ahead = [(Key::default(), Place::default()); AHEAD];
                 for (corner, (key, place)) in (first..).zip(&mut ahead[..group.len()]) {
                     *key = self.key(corner);
-                    *place = table.look(*key);
+                    *place = table.place(*key);
                 }
+                table.look(ahead[..group.len()].iter_mut().map(|(_, place)| place));
                 for ((corner, equal), (key, place)) in (first..).zip(group).zip(&ahead) {
                     *equal = table.enter(corner, *key, *place, |other| self.key(other)).ok_or(Stop::Unusual)?;
                     taken += usize::from(*equal == corner);

@@ -41,16 +41,21 @@ impl Table {
         Self(zeros_in_large_pages(slots))
     }
 
-    /// Where to look for a position, and what is there now. Looking for several ahead of the rest lets the
-    /// memory answer them all at once.
+    /// Where to look for a position.
     #[inline(always)]
-    pub fn look(&self, key: Key) -> Place {
+    pub fn place(&self, key: Key) -> Place {
         let (at, tag) = place(key, self.0.len());
-        Place { at, tag, seen: self.0[at].load(Relaxed) }
+        Place { at, tag, seen: 0 }
+    }
+
+    /// Looks at places. Where many are looked at with nothing in between, the memory answers all at once.
+    #[inline(always)]
+    pub fn look<'a>(&self, places: impl Iterator<Item = &'a mut Place>) {
+        places.for_each(|place| place.seen = self.0[place.at].load(Relaxed));
     }
 
     /// Enters a corner. Returns a corner at its position, which the slot named a moment ago: itself if the slot
-    /// was free. `None` if there is no slot near where it should be. `key_of` tells what others are at.
+    /// was free. The place need not have been looked at. `None` if there is no slot near where it should be. `key_of` tells what others are at.
     #[inline(always)]
     pub fn enter(&self, corner: u32, key: Key, place: Place, key_of: impl Fn(u32) -> Key) -> Option<u32> {
         let Place { mut at, tag, mut seen } = place;
@@ -76,7 +81,8 @@ impl Table {
 
     /// The first corner at a position that was entered.
     pub fn first(&self, key: Key, key_of: impl Fn(u32) -> Key) -> u32 {
-        let Place { mut at, tag, mut seen } = self.look(key);
+        let Place { mut at, tag, .. } = self.place(key);
+        let mut seen = self.0[at].load(Relaxed);
         let mut probes = 0..MOST_PROBES;
         while probes.next().is_some() && !(low(seen) == tag && seen != 0 && key_of(corner_in(seen)) == key) {
             at = self.after(at);
@@ -130,7 +136,7 @@ mod tests {
         let mut table = Table::new(150);
         for corner in (0..1000).rev() {
             let key = key_of(corner);
-            let equal = table.enter(corner, key, table.look(key), key_of).expect("there is room");
+            let equal = table.enter(corner, key, table.place(key), key_of).expect("there is room");
             assert!(equal % 100 == corner % 100 && (equal == corner) == (corner >= 900));
         }
         assert!((0..1000).all(|corner| table.first(key_of(corner), key_of) == corner % 100));
@@ -144,7 +150,7 @@ mod tests {
     #[test]
     fn a_full_table_says_so() {
         let table = Table::new(10);
-        let enter = |corner: u32| table.enter(corner, [corner; 3], table.look([corner; 3]), |other| [other; 3]);
+        let enter = |corner: u32| table.enter(corner, [corner; 3], table.place([corner; 3]), |other| [other; 3]);
         assert!((0..10).all(|corner| enter(corner) == Some(corner)));
         assert_eq!((enter(10), enter(3)), (None, Some(3)));
     }
