@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use boxwood::accel::cell::{Descend, bounds_in_scene, walk};
 use boxwood::accel::probe::Counts;
-use boxwood::accel::{Filter, Hit, Mode, Step, cell, registry};
+use boxwood::accel::{Filter, Hit, Mode, Step, cell, registry, validate};
 use boxwood::geometry::tri::TestKind;
 use boxwood::geometry::{Aabb, Ray};
 use boxwood::scene::{Geometry, Instance, LoadCx, Mesh, Scene};
@@ -182,6 +182,10 @@ fn places_bound_their_meshes_and_each_is_reached_once() {
     }
     for entry in registry::ALL {
         let accel = build(entry, &geometry, TestKind::Watertight);
+        let levels = accel.levels().expect("two levels");
+        for part in levels.parts().iter().map(|part| &**part).chain(levels.rest()) {
+            assert_eq!(validate::defects(part, part.geometry(), 3), [], "{}", entry.id);
+        }
         let (mut seen, mut instances, mut refs) = (HashSet::new(), HashSet::new(), 0u64);
         walk(accel.as_ref(), &mut |cell| {
             assert!(seen.insert(cell.id), "{}: {:?} twice", entry.id, cell.id);
@@ -205,7 +209,7 @@ fn places_bound_their_meshes_and_each_is_reached_once() {
         });
         // The upper level, the places, and what was flattened.
         assert_eq!(instances.len(), 1 + placed.places().len() + 1, "{}", entry.id);
-        assert!(refs >= geometry.counts().live, "{}", entry.id);
+        assert!(refs >= geometry.counts().live, "{}: {refs} references of {:?}", entry.id, geometry.counts());
     }
 }
 

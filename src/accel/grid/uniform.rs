@@ -74,7 +74,7 @@ impl<T: TriTest> Cells for Grid<T> {
 
     /// The root's children are all cells, numbered from 1.
     fn children(&self, cell: &Cell, each: &mut dyn FnMut(Cell) -> ControlFlow<()>) {
-        if cell.depth > 0 {
+        if cell.id.node > 0 {
             return;
         }
         for i in 0..self.built.lattice.count() {

@@ -9,7 +9,6 @@ use super::{Below, Instanced};
 use crate::accel::Accel;
 use crate::accel::bvh::Node;
 use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, Level, MemoryPart, Shape};
-use crate::geometry::num;
 use crate::scene::PrimRef;
 
 impl Instanced {
@@ -43,7 +42,8 @@ impl Cells for Instanced {
     fn children(&self, cell: &Cell, each: &mut dyn FnMut(Cell) -> ControlFlow<()>) {
         let CellId { instance, node } = cell.id;
         if let Some(accel) = self.accel_below(instance) {
-            return accel.children(cell, &mut |child| each(Cell { id: CellId { instance, ..child.id }, ..child }));
+            let depth = cell.depth + 1; // grids take their root to be at 0
+            return accel.children(cell, &mut |child| each(Cell { id: CellId { instance, ..child.id }, depth, ..child }));
         }
         if let Some((top, left)) = self.top.nodes.get(node as usize).and_then(|top| Some((top, top.left()?))) {
             debug_assert!(top.count() == 0);
@@ -81,13 +81,11 @@ impl Cells for Instanced {
         }
     }
 
+    /// Each mesh decided for itself: what the largest did stands for the others.
     fn remarks(&self) -> Vec<String> {
-        let mut remarks = vec![format!("Two levels: {} meshes in {} places.", num::index(self.parts.len()), self.places().len())];
-        for remark in self.parts.iter().chain(&self.rest).flat_map(|accel| accel.remarks()) {
-            if !remarks.contains(&remark) {
-                remarks.push(remark);
-            }
-        }
+        let mut remarks = vec![format!("Two levels: {} meshes in {} places.", self.parts.len(), self.places().len())];
+        let largest = self.parts.iter().chain(&self.rest).max_by_key(|accel| accel.geometry().live_count());
+        remarks.extend(largest.map(|accel| accel.remarks()).unwrap_or_default());
         remarks
     }
 
