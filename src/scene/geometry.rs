@@ -63,6 +63,16 @@ enum Live {
     Some(Vec<PrimRef>),
 }
 
+impl Counts {
+    /// Adds those of something else.
+    pub(super) const fn add(&mut self, other: &Self) {
+        self.triangles += other.triangles;
+        self.dropped += other.dropped;
+        self.degenerate += other.degenerate;
+        self.live += other.live;
+    }
+}
+
 impl Geometry {
     /// Flattens the scene: every instance becomes triangles of its own.
     ///
@@ -240,18 +250,14 @@ impl Geometry {
     /// How many triangles the whole scene has.
     pub fn counts(&self) -> Counts {
         let (triangles, live) = (self.triangles.len() as u64, self.live_count() as u64);
-        let own = Counts {
+        let mut counts = Counts {
             triangles: triangles + self.vanished,
             dropped: self.dropped.into(),
             degenerate: u64::from(self.degenerate) + self.vanished,
             live,
         };
-        self.placed.as_ref().map_or(own, |placed| Counts {
-            triangles: own.triangles + placed.sum(|part| part.triangles.len() as u64),
-            dropped: own.dropped + placed.sum(|part| part.dropped.into()),
-            degenerate: own.degenerate + placed.sum(|part| part.degenerate.into()),
-            live: own.live + placed.live_count(),
-        })
+        self.placed.iter().for_each(|placed| counts.add(placed.counts()));
+        counts
     }
 
     /// How many triangles were flattened, dropped and degenerate ones counted.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::extremes::Extremes;
 use super::geometry::Piece;
-use super::{Geometry, LoadCx, Reason, Scene};
+use super::{Counts, Geometry, LoadCx, Reason, Scene};
 use crate::geometry::num::{UNIT_ROUNDOFF, index, round_down, round_up};
 use crate::geometry::space::FAR;
 use crate::geometry::{Aabb, Space};
@@ -25,6 +25,7 @@ pub struct Placed {
     places: Vec<Place>,
     /// Their numbers, by instance.
     by_instance: Vec<u32>,
+    counts: Counts,
     _memory: Charge,
 }
 
@@ -111,13 +112,13 @@ impl Sorted {
             }
             cx.progress.start("place", places.len() as u64);
             let number = index(standing.parts.len());
-            for (place, instance, around) in boxes(&part, &places, cx)? {
-                match around {
-                    Some(around) => {
-                        bounds = bounds.union(around);
-                        standing.places.push((number, instance, place));
-                    }
-                    None => self.flat.push(instance),
+            for boxed in boxes(&part, &places, number, cx)? {
+                let around = rounded(boxed.min, boxed.max);
+                if around.min.is_finite() && around.max.is_finite() {
+                    bounds = bounds.union(around);
+                    standing.places.push(boxed);
+                } else {
+                    self.flat.push(boxed.instance);
                 }
             }
             standing.parts.push(Arc::new(part));
@@ -130,25 +131,23 @@ impl Sorted {
 /// Parts and places before the scene's space is known.
 pub(super) struct Standing {
     parts: Vec<Arc<Geometry>>,
-    /// Part, instance, and the way from the part's scaled space to the world.
-    places: Vec<(u32, u32, DAffine3)>,
+    places: Vec<Boxed>,
     memory: Charge,
 }
 
 impl Standing {
     /// Puts them into the scene's scaled space.
     pub fn settle(self, space: &Space, cx: &LoadCx) -> Result<Placed, Reason> {
-        let extremes: Vec<Extremes> = self.parts.iter().map(|part| Extremes::new(part)).collect();
-        let scale = DAffine3::from_scale(DVec3::splat(space.scale()));
-        let settle = |(part, instance, world_from_part): &(u32, u32, DAffine3)| {
+        // A power of two: boxes are scaled without rounding.
+        let scale = space.scale();
+        let settle = |boxed: &Boxed| {
             cx.cancel.check()?;
-            let scene_from_part = scale * *world_from_part;
-            let (min, max) = extremes[*part as usize].bounds(&scene_from_part);
-            let pad = pad(&self.parts[*part as usize], &scene_from_part.matrix3);
+            let scene_from_part = DAffine3::from_scale(DVec3::splat(scale)) * boxed.world_from_part;
+            let pad = pad(&self.parts[boxed.part as usize], &scene_from_part.matrix3);
             Ok(Place {
-                part: *part,
-                instance: *instance,
-                bounds: rounded(min - pad, max + pad),
+                part: boxed.part,
+                instance: boxed.instance,
+                bounds: rounded(boxed.min * scale - pad, boxed.max * scale + pad),
                 part_from_scene: scene_from_part.inverse(),
             })
         };
@@ -156,7 +155,9 @@ impl Standing {
         let places = places?;
         let mut by_instance: Vec<u32> = (0..index(places.len())).collect();
         by_instance.sort_unstable_by_key(|place| places[*place as usize].instance);
-        Ok(Placed { parts: self.parts, places, by_instance, _memory: self.memory })
+        let mut counts = Counts::default();
+        places.iter().for_each(|place| counts.add(&self.parts[place.part as usize].counts()));
+        Ok(Placed { parts: self.parts, places, by_instance, counts, _memory: self.memory })
     }
 }
 
@@ -184,14 +185,9 @@ impl Placed {
         self.places.get(self.by_instance[at] as usize)
     }
 
-    /// Triangles that structures hold, counted as often as they stand somewhere.
-    pub fn live_count(&self) -> u64 {
-        self.sum(|part| part.live_count() as u64)
-    }
-
-    /// The sum of a figure over all places.
-    pub fn sum(&self, of: impl Fn(&Geometry) -> u64) -> u64 {
-        self.places.iter().map(|place| of(&self.parts[place.part as usize])).sum()
+    /// How many triangles all places together have.
+    pub const fn counts(&self) -> &Counts {
+        &self.counts
     }
 
     /// Bytes of meshes and places.
@@ -201,10 +197,17 @@ impl Placed {
     }
 }
 
-/// Each place with the way from the part to the world, and the box around it there if 32 bits hold it.
-type Boxed = (DAffine3, u32, Option<Aabb>);
+/// A place, with the box around it in the world.
+#[derive(Clone, Copy)]
+struct Boxed {
+    part: u32,
+    instance: u32,
+    world_from_part: DAffine3,
+    min: DVec3,
+    max: DVec3,
+}
 
-fn boxes(part: &Geometry, places: &[(u32, DAffine3)], cx: &LoadCx) -> Result<Vec<Boxed>, Cancelled> {
+fn boxes(part: &Geometry, places: &[(u32, DAffine3)], number: u32, cx: &LoadCx) -> Result<Vec<Boxed>, Cancelled> {
     let extremes = Extremes::new(part);
     let object_from_part = DAffine3::from_scale(DVec3::splat(1.0 / part.space().scale()));
     let boxed = |(instance, world_from_object): &(u32, DAffine3)| {
@@ -212,9 +215,7 @@ fn boxes(part: &Geometry, places: &[(u32, DAffine3)], cx: &LoadCx) -> Result<Vec
         cx.progress.advance(1);
         let world_from_part = *world_from_object * object_from_part;
         let (min, max) = extremes.bounds(&world_from_part);
-        let around = rounded(min, max);
-        let fits = around.min.is_finite() && around.max.is_finite();
-        Ok((world_from_part, *instance, fits.then_some(around)))
+        Ok(Boxed { part: number, instance: *instance, world_from_part, min, max })
     };
     cx.pool.run(|| places.par_iter().map(boxed).collect())
 }

@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if textures.bytes() > 0 {
         fact(ui, "Textures", format::bytes(textures.bytes()), "Images as they are kept in memory: only those that are seen.");
     }
-    let all: Vec<String> = scene.warnings.iter().chain(textures.warnings()).cloned().collect();
+    let all: Vec<&String> = scene.warnings.iter().chain(textures.warnings()).collect();
     warnings(ui, &all);
 }
 
@@ -63,7 +63,7 @@ fn left_out(ui: &mut Ui, name: &str, count: u64, help: &str) {
     }
 }
 
-fn warnings(ui: &mut Ui, warnings: &[String]) {
+fn warnings(ui: &mut Ui, warnings: &[&String]) {
     if warnings.is_empty() {
         return;
     }
@@ -71,7 +71,7 @@ fn warnings(ui: &mut Ui, warnings: &[String]) {
     let color = Palette::in_ui(ui).warn;
     CollapsingHeader::new(RichText::new(format!("! {title}")).color(color)).id_salt("warnings").show(ui, |ui| {
         for warning in warnings {
-            ui.label(RichText::new(warning).small());
+            ui.label(RichText::new(*warning).small());
         }
     });
 }
