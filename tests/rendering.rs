@@ -5,10 +5,10 @@ mod common;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use boxwood::accel::{Accel, registry};
+use boxwood::accel::{self, Accel, registry};
 use boxwood::geometry::tri::TestKind;
 use boxwood::render::{Film, Job, Mode, Renderer, Request, render};
-use boxwood::scene::Camera;
+use boxwood::scene::{Camera, Projection};
 use boxwood::task::{Cancel, Pool, Progress};
 use common::{ball, build, geometry_of, scene_of, soup};
 use glam::Vec3;
@@ -37,6 +37,46 @@ fn all_structures_give_the_same_picture() {
             }
         }
     }
+}
+
+#[test]
+fn only_pixels_that_cannot_see_the_scene_are_not_traced() {
+    let around = [Vec3::new(1.0, 0.7, 2.0), Vec3::new(-3.0, 0.1, 0.2), Vec3::new(0.0, 0.0, 1.0)];
+    let projections = [
+        Projection::Perspective { fov_y: 0.7 },
+        Projection::Perspective { fov_y: 3.0 },
+        Projection::Perspective { fov_y: 1e-4 },
+        Projection::Orthographic { height: 3.0 },
+        Projection::Orthographic { height: 40.0 },
+    ];
+    let (mut left_out, mut all) = (0, 0);
+    for triangles in [ball(8), soup(60, 0.3, 3)] {
+        let mut job = job(&triangles, "bvh", Mode::Depth);
+        for (i, direction) in around.into_iter().enumerate() {
+            for projection in projections {
+                for distance in [0.5, 3.0, 20.0, 1e5] {
+                    // Beside the middle, so that the scene is cut by an edge of the picture or out of it.
+                    let target = Vec3::new(0.4, -0.3, 0.2) * i as f32 * distance.min(4.0);
+                    job.camera = Camera { eye: target + direction * distance, target, up: Vec3::Y, projection };
+                    let (mut film, pool) = (Film::new(41, 30), Pool::new("test", 1));
+                    let (mut traced, mut sums) = (0, vec![[0.0f32; 4]; 41 * 30]);
+                    for sample in 0..2 {
+                        let rays = job.camera_rays(41, 30, 0..30, sample);
+                        let mut hits = vec![None; rays.len()];
+                        job.trace(&rays, accel::Mode::Closest, &mut hits, &Cancel::new()).expect("not cancelled");
+                        for (sum, hit) in sums.iter_mut().zip(hits).filter_map(|(sum, hit)| Some((sum, hit?))) {
+                            [sum[0], sum[3]] = [sum[0] + hit.t, sum[3] + 1.0];
+                        }
+                        traced += job.pass(&mut film, &pool, &Cancel::new()).expect("not cancelled");
+                    }
+                    let same = film.means().zip(&sums).all(|(mean, sum)| [mean[0], mean[3]] == [sum[0] * 0.5, sum[3] * 0.5]);
+                    assert!(same, "{:?}", job.camera);
+                    (left_out, all) = (left_out + 2 * 41 * 30 - traced, all + 2 * 41 * 30);
+                }
+            }
+        }
+    }
+    assert!(left_out * 3 > all && left_out < all, "{left_out} of {all} rays were left out");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::scene::CameraSpec;
+use crate::scene::{CameraSpec, Keep};
 
 /// What is opened, and with how much of the machine.
 #[derive(Debug, clap::Args)]
@@ -13,12 +13,26 @@ pub struct ModelArgs {
     pub machine: MachineArgs,
 }
 
-/// What becomes of meshes that stand in several places.
-#[derive(Clone, Copy, Debug, clap::Args)]
-pub struct InstanceArgs {
+/// What is made of the scene.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub struct SceneArgs {
     /// Flatten meshes that stand in several places, instead of building one structure for each and a level above.
     #[arg(long)]
     pub flatten: bool,
+    /// Treat everything as if it needed all that any scene can: vertices with every attribute, each image whole, every hit
+    /// tested for holes, a level above single meshes. For seeing what leaving that out saves ('boxwood needs').
+    #[arg(long, conflicts_with = "flatten")]
+    pub force_all: bool,
+}
+
+impl SceneArgs {
+    /// Every instance as triangles of its own.
+    pub const FLAT: Self = Self { flatten: true, force_all: false };
+
+    /// How much of the scene is kept.
+    pub const fn keep(self) -> Keep {
+        if self.force_all { Keep::All } else { Keep::Needed }
+    }
 }
 
 /// How much of the machine is used.

@@ -4,7 +4,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::args::{InstanceArgs, LookArgs, ModelArgs, Size, seconds};
+use super::args::{LookArgs, ModelArgs, SceneArgs, Size, seconds};
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
@@ -64,7 +64,7 @@ pub struct Args {
     #[command(flatten)]
     build: BuildArgs,
     #[command(flatten)]
-    instances: InstanceArgs,
+    scene: SceneArgs,
     /// Also work out end-point overlap, and count random lines that nothing cuts short, as stats does.
     #[arg(long)]
     quality: bool,
@@ -96,7 +96,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     }
     let params = args.build.params(entries)?;
     let cx = Context::new(args.model.machine, cancel);
-    let model = cx.load_with_instances(&args.model.model, args.instances.flatten)?;
+    let model = cx.load_with_instances(&args.model.model, args.scene)?;
     // It draws flattened triangles alone.
     let raster = raster && model.geometry.placed().is_none();
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::args::MachineArgs;
+use super::args::{MachineArgs, SceneArgs};
 use super::bar;
 use super::failure::Failure;
 use crate::accel::params::ParamValues;
@@ -11,8 +11,8 @@ use crate::accel::{BuildCx, BuildError};
 use crate::geometry::tri::TestKind;
 use crate::lab::{BuiltRow, MachineFacts, SceneFacts, build_timed};
 use crate::render::Looks;
-use crate::scene::{self, Geometry, LoadCx, Reason, Scene};
-use crate::task::{Budget, Cancel, Pool, Progress};
+use crate::scene::{self, Geometry, Keep, LoadCx, Scene};
+use crate::task::{Budget, Cancel, Phase, Pool, Progress};
 
 /// How the work is done.
 pub struct Context {
@@ -25,31 +25,51 @@ pub struct Context {
 pub struct Model {
     pub scene: Arc<Scene>,
     pub geometry: Arc<Geometry>,
+    /// How much of it was kept.
+    pub keep: Keep,
+    /// Seconds it took to open it, by phase.
+    pub phases: Vec<Phase>,
 }
 
 impl Context {
     pub fn new(machine: MachineArgs, cancel: Cancel) -> Self {
-        const MIB: u64 = 1 << 20;
-        let budget = machine.memory.map_or_else(Budget::half_of_machine, |mib| Budget::new(mib.saturating_mul(MIB)));
+        let budget = machine.memory.map_or_else(Budget::half_of_machine, Budget::of_mib);
         Self { cancel, pool: Pool::new("work", machine.threads), budget }
     }
 
     /// Opens and flattens a model; its warnings go to standard error.
     pub fn load(&self, model: &str) -> Result<Model, Failure> {
-        self.open(model, Geometry::new)
+        self.load_with_instances(model, SceneArgs::FLAT)
     }
 
-    /// The same, but meshes that stand in several places are kept once, unless `flatten` says otherwise.
-    pub fn load_with_instances(&self, model: &str, flatten: bool) -> Result<Model, Failure> {
-        self.open(model, if flatten { Geometry::new } else { Geometry::with_instances })
+    /// The same, but meshes that stand in several places are kept once, unless `args` say otherwise.
+    pub fn load_with_instances(&self, model: &str, args: SceneArgs) -> Result<Model, Failure> {
+        self.open(model, args, false)
     }
 
-    fn open(&self, model: &str, gather: fn(&Scene, &LoadCx) -> Result<Geometry, Reason>) -> Result<Model, Failure> {
-        let cx = self.load_cx();
+    /// The same with the positions and indices of the scene's meshes beside those of the geometry.
+    pub fn load_whole(&self, model: &str, args: SceneArgs) -> Result<Model, Failure> {
+        self.open(model, args, true)
+    }
+
+    fn open(&self, model: &str, args: SceneArgs, whole: bool) -> Result<Model, Failure> {
+        let cx = LoadCx { keep: args.keep(), ..self.load_cx() };
+        let gather = if args.flatten { Geometry::new } else { Geometry::with_instances };
         let opened = bar::watch("open", &cx.progress, || {
-            let scene = scene::open(model, &cx)?;
+            let mut scene = scene::open(model, &cx)?;
+            if cx.keep == Keep::All {
+                scene.fill_in();
+            }
             let geometry = gather(&scene, &cx).map_err(|reason| reason.of(model))?;
-            Ok::<_, Failure>(Model { scene: Arc::new(scene), geometry: Arc::new(geometry) })
+            if !whole && cx.keep == Keep::Needed {
+                scene.give_up_corners();
+            }
+            Ok::<_, Failure>(Model {
+                scene: Arc::new(scene),
+                geometry: Arc::new(geometry),
+                keep: cx.keep,
+                phases: cx.progress.finish(),
+            })
         })?;
         for warning in &opened.scene.warnings {
             super::output::warn(&format!("{model}: {warning}"));
@@ -59,7 +79,7 @@ impl Context {
 
     /// Decodes the textures of a model; what cannot be read is told on standard error.
     pub fn looks(&self, model: &Model) -> Result<Looks, Failure> {
-        let cx = self.load_cx();
+        let cx = LoadCx { keep: model.keep, ..self.load_cx() };
         let looks = bar::watch("textures", &cx.progress, || Looks::decode(&model.scene, &cx))?;
         looks.textures().warnings().iter().for_each(|warning| super::output::warn(&format!("{}: {warning}", model.scene.name)));
         Ok(looks)
@@ -67,7 +87,7 @@ impl Context {
 
     /// What loading and making scenes takes.
     pub fn load_cx(&self) -> LoadCx {
-        LoadCx { cancel: self.cancel.clone(), progress: Progress::new(), budget: self.budget.clone(), pool: self.pool.clone() }
+        LoadCx::new(self.cancel.clone(), Progress::new(), self.budget.clone(), self.pool.clone())
     }
 
     /// What building takes.

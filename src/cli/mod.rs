@@ -10,6 +10,7 @@ mod compare;
 mod context;
 mod failure;
 mod hits;
+mod needs;
 mod npy;
 mod outcome;
 mod output;
@@ -70,6 +71,8 @@ enum Command {
     Check(check::Args),
     /// Compare bounding volumes around the nodes of one tree: tightness against cost.
     Volumes(volumes::Args),
+    /// Say what a model uses and what is left out for it, and what that saves.
+    Needs(needs::Args),
     /// Render a picture to a PNG file.
     Render(render::Args),
     /// Write the rays of a view to a NumPy file.
@@ -103,6 +106,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Stability(args) => stability::run(&args, cancel),
         Command::Check(args) => check::run(&args, cancel),
         Command::Volumes(args) => volumes::run(&args, cancel),
+        Command::Needs(args) => needs::run(&args, cancel),
         Command::Render(args) => render::run(&args, cancel),
         Command::Rays(args) => rays::run(&args, cancel),
         Command::Trace(args) => trace::run(&args, cancel),

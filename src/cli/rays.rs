@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::args::{LookArgs, ModelArgs, Size};
+use super::args::{LookArgs, ModelArgs, SceneArgs, Size};
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{OutFile, print};
@@ -45,7 +45,7 @@ pub struct Args {
 pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let out = OutFile::at(&args.output)?;
     let cx = Context::new(args.model.machine, cancel);
-    let model = cx.load_with_instances(&args.model.model, false)?;
+    let model = cx.load_with_instances(&args.model.model, SceneArgs::default())?;
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
     let (set, _memory) = ordered(args.kind, &model, camera, finder(&model, &cx)?, (args.size, args.order), &cx)?;
     out.write(&cx.cancel, |file| npy::write_rays(&set.rays, file))?;

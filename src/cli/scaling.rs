@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::args::{ModelArgs, Size, seconds};
+use super::args::{ModelArgs, SceneArgs, Size, seconds};
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{OutFile, print, print_json};
@@ -150,14 +150,19 @@ fn made(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failur
 
 /// The model as it is, and cut finer and finer.
 fn subdivided(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failure> {
-    let mut model = cx.load(&args.model.model)?;
+    let mut model = cx.load_whole(&args.model.model, SceneArgs::FLAT)?;
     let mut geometries = vec![Arc::clone(&model.geometry)];
     while model.scene.triangle_count() * 4 <= args.to {
         let load_cx = cx.load_cx();
         let finer = || {
             let scene = subdivide(&model.scene, &load_cx).map_err(|reason| reason.of(&args.model.model))?;
             let geometry = Geometry::new(&scene, &load_cx).map_err(|reason| reason.of(&args.model.model))?;
-            Ok::<_, Failure>(Model { scene: Arc::new(scene), geometry: Arc::new(geometry) })
+            Ok::<_, Failure>(Model {
+                scene: Arc::new(scene),
+                geometry: Arc::new(geometry),
+                keep: load_cx.keep,
+                phases: Vec::new(),
+            })
         };
         model = bar::watch("subdivide", &load_cx.progress, finer)?;
         geometries.push(Arc::clone(&model.geometry));

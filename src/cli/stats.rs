@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::args::{InstanceArgs, ModelArgs};
+use super::args::{ModelArgs, SceneArgs};
 use super::context::{Context, Model};
 use super::failure::Failure;
 use super::output::{print, print_json};
@@ -31,7 +31,7 @@ pub struct Args {
     #[command(flatten)]
     build: BuildArgs,
     #[command(flatten)]
-    instances: InstanceArgs,
+    scene: SceneArgs,
     #[command(flatten)]
     quality: QualityArgs,
     /// Print one JSON object.
@@ -43,7 +43,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let Many(entries) = &args.structure;
     let params = args.build.params(entries)?;
     let cx = Context::new(args.model.machine, cancel);
-    let model = cx.load_with_instances(&args.model.model, args.instances.flatten)?;
+    let model = cx.load_with_instances(&args.model.model, args.scene)?;
     let options = args.quality.options(true);
     let (mut structures, mut contestants) = (Vec::new(), Vec::new());
     for (entry, params) in entries.iter().zip(&params) {

@@ -5,7 +5,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::args::{InstanceArgs, ModelArgs};
+use super::args::{ModelArgs, SceneArgs};
 use super::context::Context;
 use super::failure::Failure;
 use super::output::{OutFile, print, print_json};
@@ -38,7 +38,7 @@ pub struct Args {
     #[command(flatten)]
     build: BuildArgs,
     #[command(flatten)]
-    instances: InstanceArgs,
+    scene: SceneArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -69,7 +69,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let cx = Context::new(args.model.machine, cancel);
     let (rays, _rays_memory) = npy::read_rays(&args.rays, &cx.budget, &cx.cancel)?;
     let _hits_memory = cx.budget.charge((rays.len() * size_of::<Option<Hit>>()) as u64)?;
-    let model = cx.load_with_instances(&args.model.model, args.instances.flatten)?;
+    let model = cx.load_whole(&args.model.model, args.scene)?;
     let built = cx.build(entry, &model, args.build.test, &params)?;
 
     let mode = if args.any_hit { Mode::Any } else { Mode::Closest };

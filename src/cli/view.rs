@@ -53,6 +53,9 @@ pub struct Args {
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
+    /// Switch structures a thousand times and open fifty models before that, and say what memory was held.
+    #[arg(long, requires = "screenshot")]
+    pub endure: bool,
     #[command(flatten)]
     pub look: LookArgs,
     #[command(flatten)]
@@ -78,9 +81,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         measure: args.measure,
         check: args.check,
         pace: args.pace,
+        endure: args.endure,
         screenshot: args.screenshot,
         threads: args.machine.threads,
-        memory_bytes: args.machine.memory.map(|mib| mib << 20),
+        memory_mib: args.machine.memory,
     };
     run(options).map_err(|error| match error {
         ViewerError::NoStructure(..) => Failure::Input(error.to_string()),

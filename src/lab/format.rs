@@ -39,6 +39,15 @@ pub fn bytes(n: u64) -> String {
 
 const KIB: f64 = 1024.0;
 
+/// A difference of bytes: `9.41 MiB`, `-528 B`; nothing is missing.
+pub fn signed_bytes(n: i64) -> String {
+    match n {
+        0 => MISSING.to_owned(),
+        n if n < 0 => format!("-{}", bytes(n.unsigned_abs())),
+        n => bytes(n.unsigned_abs()),
+    }
+}
+
 /// A duration: `4.12 ms`.
 pub fn duration(secs: f64) -> String {
     with_unit(secs, TIME)

@@ -13,6 +13,7 @@ mod lines;
 mod measure;
 mod mesh_check;
 mod model_check;
+pub mod needs;
 #[cfg(feature = "peers")]
 pub mod peers;
 mod quality;

@@ -1,18 +1,21 @@
 //! What surfaces look like besides their shape and plain colour: the scene's textures, and which meshes rays may pass in
 //! places. A scene that has neither pays for neither.
 
+use std::sync::Arc;
+
 use super::Mode;
 use crate::accel::{self, Accel, Filter, Hit, Traced};
 use crate::geometry::Ray;
 use crate::scene::coverage::{Surface, tested_meshes};
 use crate::scene::texture::Textures;
-use crate::scene::{LoadCx, Scene};
+use crate::scene::{Feature, Keep, LoadCx, Needs, Scene};
 use crate::task::{Cancel, Cancelled};
 
-/// The textures of a scene, as far as they are there.
-#[derive(Debug, Default)]
+/// The textures of a scene, as far as they are there, and what of its looks it needs.
+#[derive(Debug)]
 pub struct Looks {
-    textures: Textures,
+    textures: Arc<Textures>,
+    needs: Needs,
     /// By mesh, whether hits on it need the alpha test; empty if none does.
     tested: Vec<bool>,
 }
@@ -20,20 +23,41 @@ pub struct Looks {
 impl Looks {
     /// With textures that are there; without them ([`Textures::none`]) surfaces have their plain colour and opacity.
     pub fn new(scene: &Scene, textures: Textures) -> Self {
-        let tested = tested_meshes(scene, &textures);
-        Self { textures, tested: if tested.contains(&true) { tested } else { Vec::new() } }
+        let needs = Needs::of(scene, &textures);
+        let tested = if needs.has(Feature::AlphaTest) { tested_meshes(scene, &textures) } else { Vec::new() };
+        Self { needs, textures: Arc::new(textures), tested: if tested.contains(&true) { tested } else { Vec::new() } }
     }
 
-    /// Decodes the scene's textures.
+    /// Treats every surface as if it needed everything: every hit is asked whether it counts, every shading looks for
+    /// normals, colours and images.
+    pub fn of_everything(scene: &Scene, textures: Textures) -> Self {
+        Self { needs: Needs::ALL, textures: Arc::new(textures), tested: vec![true; scene.meshes.len()] }
+    }
+
+    /// Decodes the scene's textures; where all is to be kept it treats every surface alike ([`Self::of_everything`]).
     ///
     /// # Errors
     /// [`Cancelled`] within 100 ms of the request.
     pub fn decode(scene: &Scene, cx: &LoadCx) -> Result<Self, Cancelled> {
-        Ok(Self::new(scene, Textures::decode(scene, cx)?))
+        let looks = match cx.keep {
+            Keep::Needed => Self::new,
+            Keep::All => Self::of_everything,
+        };
+        Ok(looks(scene, Textures::decode(scene, cx)?))
+    }
+
+    /// The same with the shading of other needs: for measuring what it costs.
+    pub fn with_shading(&self, needs: Needs) -> Self {
+        Self { textures: Arc::clone(&self.textures), needs, tested: self.tested.clone() }
+    }
+
+    /// What the scene needs of its looks.
+    pub const fn needs(&self) -> Needs {
+        self.needs
     }
 
     /// The textures.
-    pub const fn textures(&self) -> &Textures {
+    pub fn textures(&self) -> &Textures {
         &self.textures
     }
 
@@ -57,6 +81,13 @@ impl Looks {
         } else {
             accel.trace(rays, mode, hits, cancel)
         }
+    }
+}
+
+impl Default for Looks {
+    /// Solid surfaces without images, of any scene.
+    fn default() -> Self {
+        Self { textures: Arc::default(), needs: Needs::ALL, tested: Vec::new() }
     }
 }
 

@@ -1,57 +1,88 @@
 //! The look of a hit.
 
-use glam::Vec3;
+use glam::{Mat3A, Vec3};
 
 use super::sampler::{Sampler, cosine_direction};
 use super::spawn::Point;
 use super::{Job, Mode};
 use crate::accel::Hit;
 use crate::geometry::Ray;
-use crate::scene::{Geometry, coverage};
+use crate::scene::{Feature, Geometry, Needs, coverage};
 
-/// A hit with what shading needs of its surface.
-struct Surface {
-    /// Shading normal towards the viewer, of unit length.
-    normal: Vec3,
-    /// Linear base colour.
-    base: Vec3,
+/// The normal towards the viewer, of unit length: of the triangle, or as its vertices have it (`SMOOTH`), which may have
+/// to be turned with the instance (`TURNED`).
+fn normal<const SMOOTH: bool, const TURNED: bool>(job: &Job, ray: &Ray, hit: &Hit) -> Vec3 {
+    let facing = Point::of(job.accel.geometry(), ray, hit).normal;
+    let instance = &job.scene.instances[hit.instance as usize];
+    let mesh = &job.scene.meshes[instance.mesh];
+    if !SMOOTH || mesh.normals.is_empty() {
+        return facing;
+    }
+    let [i, j, k] = mesh.triangles[hit.primitive as usize].map(|i| i as usize);
+    let (u, v) = (hit.u, hit.v);
+    let mut smooth = mesh.normals[i] * (1.0 - u - v) + mesh.normals[j] * u + mesh.normals[k] * v;
+    if TURNED {
+        smooth = cofactors(&instance.world_from_object.matrix3) * smooth;
+    }
+    let smooth = smooth.try_normalize().unwrap_or(facing);
+    if smooth.dot(ray.dir) > 0.0 { -smooth } else { smooth }
 }
 
-impl Surface {
-    fn of(job: &Job, ray: &Ray, hit: &Hit) -> Self {
-        let instance = &job.scene.instances[hit.instance as usize];
-        let mesh = &job.scene.meshes[instance.mesh];
-        let facing = Point::of(job.accel.geometry(), ray, hit).normal;
-        let normal = if mesh.normals.is_empty() {
-            facing
-        } else {
-            let [i, j, k] = mesh.triangles[hit.primitive as usize].map(|i| i as usize);
-            let (u, v) = (hit.u, hit.v);
-            // Normals go by the inverse transpose; its determinant's sign is settled by facing.
-            let to_world = instance.world_from_object.matrix3.inverse().transpose();
-            let smooth = to_world * (mesh.normals[i] * (1.0 - u - v) + mesh.normals[j] * u + mesh.normals[k] * v);
-            let smooth = smooth.try_normalize().unwrap_or(facing);
-            if smooth.dot(ray.dir) > 0.0 { -smooth } else { smooth }
-        };
-        let surface = coverage::Surface::new(&job.scene, instance.mesh, job.looks.textures());
-        Self { normal, base: surface.color(hit.primitive, hit.u, hit.v).into() }
-    }
+/// What normals are turned by: the inverse transpose but for its length and sign, which are settled later, and there for
+/// singular matrices too.
+fn cofactors(m: &Mat3A) -> Mat3A {
+    Mat3A::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
 }
 
 /// The sample of a hit that needs no further ray; in [`Mode::Ao`], that of an open point.
-pub fn shade(job: &Job, ray: &Ray, hit: &Hit) -> [f32; 4] {
-    let color = match job.mode {
-        Mode::Shaded => {
-            let surface = Surface::of(job, ray, hit);
-            let headlight = surface.normal.dot(-ray.dir.normalize_or_zero()).max(0.0);
-            let sky = 0.5 + 0.5 * surface.normal.dot(job.scene.up);
-            surface.base * (0.12 + 0.62 * headlight + 0.36 * sky * Vec3::new(0.92, 0.97, 1.0))
-        }
-        Mode::Normals => Surface::of(job, ray, hit).normal * 0.5 + 0.5,
-        Mode::Depth => Vec3::splat(hit.t),
-        Mode::Ao => Vec3::ONE,
-        Mode::Nodes | Mode::Prims => Vec3::ZERO,
-    };
+pub type Shader = fn(&Job, &Ray, &Hit) -> [f32; 4];
+
+/// The shading of a mode, without what a scene has none of.
+pub fn shader(mode: Mode, needs: Needs) -> Shader {
+    let [smooth, turned] = [Feature::Normals, Feature::Transforms].map(|feature| needs.has(feature));
+    let [colors, maps] = [Feature::VertexColors, Feature::ColorMaps].map(|feature| needs.has(feature));
+    match mode {
+        Mode::Shaded => match (smooth, turned) {
+            (false, _) => shaded::<false, false>(colors, maps),
+            (true, false) => shaded::<true, false>(colors, maps),
+            (true, true) => shaded::<true, true>(colors, maps),
+        },
+        Mode::Normals => match (smooth, turned) {
+            (false, _) => |job, ray, hit| opaque(normal::<false, false>(job, ray, hit) * 0.5 + 0.5),
+            (true, false) => |job, ray, hit| opaque(normal::<true, false>(job, ray, hit) * 0.5 + 0.5),
+            (true, true) => |job, ray, hit| opaque(normal::<true, true>(job, ray, hit) * 0.5 + 0.5),
+        },
+        Mode::Depth => |_, _, hit| opaque(Vec3::splat(hit.t)),
+        Mode::Ao => |_, _, _| opaque(Vec3::ONE),
+        Mode::Nodes | Mode::Prims => |_, _, _| opaque(Vec3::ZERO),
+    }
+}
+
+fn shaded<const SMOOTH: bool, const TURNED: bool>(colors: bool, maps: bool) -> Shader {
+    match (colors, maps) {
+        (false, false) => lit::<SMOOTH, TURNED, false, false>,
+        (false, true) => lit::<SMOOTH, TURNED, false, true>,
+        (true, false) => lit::<SMOOTH, TURNED, true, false>,
+        (true, true) => lit::<SMOOTH, TURNED, true, true>,
+    }
+}
+
+/// A surface in the light of a lamp at the camera and of the sky.
+fn lit<const SMOOTH: bool, const TURNED: bool, const COLORS: bool, const MAPS: bool>(
+    job: &Job,
+    ray: &Ray,
+    hit: &Hit,
+) -> [f32; 4] {
+    let normal = normal::<SMOOTH, TURNED>(job, ray, hit);
+    let mesh = job.scene.instances[hit.instance as usize].mesh;
+    let surface = coverage::Surface::new(&job.scene, mesh, job.looks.textures());
+    let base = Vec3::from_array(surface.color::<COLORS, MAPS>(hit.primitive, hit.u, hit.v));
+    let headlight = normal.dot(-ray.dir.normalize_or_zero()).max(0.0);
+    let sky = 0.5 + 0.5 * normal.dot(job.scene.up);
+    opaque(base * (0.12 + 0.62 * headlight + 0.36 * sky * Vec3::new(0.92, 0.97, 1.0)))
+}
+
+fn opaque(color: Vec3) -> [f32; 4] {
     [color.x, color.y, color.z, 1.0]
 }
 

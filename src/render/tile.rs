@@ -1,16 +1,17 @@
 //! One pass of a picture: bands of rows in parallel, each a batch of rays, traced and shaded.
 
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::film::Band;
 use super::sampler::{Sampler, in_pixel, on_screen};
-use super::shade::{occlusion_ray, shade};
+use super::shade::{occlusion_ray, shader};
 use super::{Film, Looks, Mode};
 use crate::accel::probe::Counts;
 use crate::accel::{self, Accel, Hit};
 use crate::geometry::Ray;
-use crate::geometry::num::narrow;
+use crate::geometry::num::{floor_index, narrow};
 use crate::scene::{Camera, Scene};
 use crate::task::{Cancel, Cancelled, Pool};
 use glam::Vec2;
@@ -39,79 +40,132 @@ impl std::fmt::Debug for Job {
 /// Rows of a band: one batch of a few thousand rays.
 const ROWS: usize = 4;
 
-impl Job {
-    /// The camera ray of a sample.
-    pub fn camera_rays(&self, width: u32, height: u32, rows: std::ops::Range<u32>, sample: u32) -> Vec<Ray> {
-        let frame = self.camera.frame();
-        let size = Vec2::new(width as f32, height as f32);
-        let ray = |x: u32, y: u32| {
-            let at = Vec2::new(x as f32, y as f32) + in_pixel(x, y, sample);
-            self.camera.ray(&frame, on_screen(at, size), size.x / size.y)
-        };
-        rows.flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| ray(x, y)).collect()
+/// A part of a picture: of a pass, a band of rows and those of its columns in which the scene can be seen.
+#[derive(Clone, Debug)]
+struct Part {
+    rows: Range<u32>,
+    columns: Range<u32>,
+    /// Columns of the whole picture.
+    width: u32,
+    sample: u32,
+}
+
+impl Part {
+    /// The column and row of its `i`-th ray.
+    fn pixel(&self, i: usize) -> (u32, u32) {
+        let (i, columns) = (i as u32, self.columns.len() as u32);
+        (self.columns.start + i % columns, self.rows.start + i / columns)
     }
 
-    /// Adds one sample to every pixel, and returns the number of rays traced.
+    /// The places of its rays in a list of pixels that begins with row `first`.
+    fn places(&self, first: u32) -> impl Iterator<Item = usize> {
+        let Self { rows, columns, width, .. } = self.clone();
+        rows.flat_map(move |y| columns.clone().map(move |x| ((y - first) * width + x) as usize))
+    }
+}
+
+impl Job {
+    /// The camera rays of a sample, row by row.
+    pub fn camera_rays(&self, width: u32, height: u32, rows: Range<u32>, sample: u32) -> Vec<Ray> {
+        self.rays_of(&Part { rows, columns: 0..width, width, sample }, height)
+    }
+
+    fn rays_of(&self, part: &Part, height: u32) -> Vec<Ray> {
+        let frame = self.camera.frame();
+        let size = Vec2::new(part.width as f32, height as f32);
+        let ray = |x: u32, y: u32| {
+            let at = Vec2::new(x as f32, y as f32) + in_pixel(x, y, part.sample);
+            self.camera.ray(&frame, on_screen(at, size), size.x / size.y)
+        };
+        part.rows.clone().flat_map(|y| part.columns.clone().map(move |x| (x, y))).map(|(x, y)| ray(x, y)).collect()
+    }
+
+    /// Columns and rows outside of which no ray meets the scene's bounds. What a structure does with a ray is shown for all
+    /// of them.
+    fn seen(&self, width: u32, height: u32) -> [Range<u32>; 2] {
+        if self.mode.is_heat() {
+            return [0..width, 0..height];
+        }
+        let Some([low, high]) = self.camera.window(self.accel.geometry().world_bounds(), width as f32 / height as f32) else {
+            return [0..0, 0..0];
+        };
+        // Rays lie anywhere in their pixel.
+        let span = |from: f64, to: f64, n: u32| {
+            let pixel = |x: f64| floor_index((x * 0.5 + 0.5).clamp(0.0, 1.0) * f64::from(n), n as usize) as u32;
+            pixel(from)..n.min(pixel(to) + 1)
+        };
+        [span(low.x, high.x, width), span(-high.y, -low.y, height)]
+    }
+
+    /// Adds one sample to every pixel, and returns the number of rays traced: none for pixels that cannot see the scene.
     ///
     /// # Errors
     /// [`Cancelled`]; the film then holds a part of the pass and is of no use.
     pub fn pass(&self, film: &mut Film, pool: &Pool, cancel: &Cancel) -> Result<u64, Cancelled> {
         let (width, height, sample) = (film.width(), film.height(), film.samples());
+        let [columns, seen] = self.seen(width, height);
         let bands: Vec<_> = film.bands_mut(ROWS).into_iter().enumerate().collect();
-        let band = |(i, (sums, depth)): (usize, Band<'_>)| {
+        let band = |(i, band): (usize, Band<'_>)| {
             let first = (i * ROWS) as u32;
-            let rows = first..height.min(first + ROWS as u32);
-            self.band(sums, depth, width, height, rows, sample, cancel)
+            let rows = first.max(seen.start)..height.min(first + ROWS as u32).min(seen.end);
+            let part = Part { rows, columns: columns.clone(), width, sample };
+            if part.rows.is_empty() || part.columns.is_empty() {
+                return cancel.check().map(|()| 0);
+            }
+            self.band(band, first, &part, height, cancel)
         };
         let rays = pool.run(|| bands.into_par_iter().map(band).try_reduce(|| 0, |a, b| Ok(a + b)))?;
         film.pass_done();
         Ok(rays)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one band of one pass")]
-    fn band(
-        &self,
-        sums: &mut [[f32; 4]],
-        depth: Option<&mut [f32]>,
-        width: u32,
-        height: u32,
-        rows: std::ops::Range<u32>,
-        sample: u32,
-        cancel: &Cancel,
-    ) -> Result<u64, Cancelled> {
-        let first_row = rows.start;
-        let rays = self.camera_rays(width, height, rows, sample);
+    /// Adds a part to a band that begins with row `first`.
+    fn band(&self, (sums, depth): Band<'_>, first: u32, part: &Part, height: u32, cancel: &Cancel) -> Result<u64, Cancelled> {
+        let rays = self.rays_of(part, height);
         let mut samples = vec![[0.0; 4]; rays.len()];
         let mut hits = vec![None; rays.len()];
         if self.mode.is_heat() {
             self.watch(&rays, &mut hits, &mut samples, cancel)?;
         } else {
             self.trace(&rays, accel::Mode::Closest, &mut hits, cancel)?;
-            for ((ray, hit), sample) in rays.iter().zip(&hits).zip(&mut samples) {
-                if let Some(hit) = hit {
-                    *sample = shade(self, ray, hit);
-                }
-            }
+            self.shade(&rays, &hits, &mut samples);
         }
         let mut traced = rays.len() as u64;
         if self.mode == Mode::Ao {
-            let pixel = |i: usize| Sampler::new(i as u32 % width, first_row + i as u32 / width, sample);
-            traced += self.occlude(&rays, &hits, pixel, &mut samples, cancel)?;
+            let sampler = |i: usize| {
+                let (x, y) = part.pixel(i);
+                Sampler::new(x, y, part.sample)
+            };
+            traced += self.occlude(&rays, &hits, sampler, &mut samples, cancel)?;
         }
-        for (sum, sample) in sums.iter_mut().zip(&samples) {
-            (0..4).for_each(|k| sum[k] += sample[k]);
+        for (at, sample) in part.places(first).zip(&samples) {
+            (0..4).for_each(|k| sums[at][k] += sample[k]);
         }
         if let Some(depth) = depth {
             // t is depth along the view: the camera's rays have unit length along it.
             let scale = self.accel.geometry().space().scale();
             let scaled = |hit: &Option<Hit>| hit.map_or(f32::INFINITY, |h| narrow(f64::from(h.t) * scale));
-            depth.iter_mut().zip(&hits).for_each(|(depth, hit)| *depth = scaled(hit));
+            part.places(first).zip(&hits).for_each(|(at, hit)| depth[at] = scaled(hit));
         }
         Ok(traced)
     }
 
-    fn trace(&self, rays: &[Ray], mode: accel::Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<(), Cancelled> {
+    /// Finds what rays hit; where surfaces have holes they pass.
+    ///
+    /// # Errors
+    /// As [`Accel::trace`].
+    pub fn trace(&self, rays: &[Ray], mode: accel::Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<(), Cancelled> {
         self.looks.trace(&self.scene, self.accel.as_ref(), rays, mode, hits, cancel).map(|_| ())
+    }
+
+    /// What is seen of the hits; samples of rays that hit nothing are left as they are.
+    pub fn shade(&self, rays: &[Ray], hits: &[Option<Hit>], samples: &mut [[f32; 4]]) {
+        let shade = shader(self.mode, self.looks.needs());
+        for ((ray, hit), sample) in rays.iter().zip(hits).zip(samples) {
+            if let Some(hit) = hit {
+                *sample = shade(self, ray, hit);
+            }
+        }
     }
 
     /// Traces and counts, one ray at a time. What a structure does is shown as if all surfaces were solid.

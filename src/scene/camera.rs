@@ -1,7 +1,7 @@
 //! A view of the scene: where it is seen from, and how it is projected.
 
-use crate::geometry::Ray;
-use glam::{Vec2, Vec3};
+use crate::geometry::{Aabb, Ray};
+use glam::{DVec2, Vec2, Vec3};
 
 /// How depth becomes a picture.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -87,18 +87,50 @@ impl Camera {
         }
     }
 
+    /// The part of the picture outside of which rays surely miss a box: its lower left and upper right corner, where
+    /// (-1, -1) and (1, 1) are those of the picture, which it may reach beyond. Everything where the box reaches beside or
+    /// behind the eye; `None` if the box is empty.
+    pub fn window(&self, bounds: &Aabb, aspect: f32) -> Option<[DVec2; 2]> {
+        /// What rays and axes lose to rounding, and more: in units of the screen at unit distance, or of its height.
+        const SLACK: f64 = 1e-5;
+        const EVERYTHING: [DVec2; 2] = [DVec2::NEG_INFINITY, DVec2::INFINITY];
+        if bounds.is_empty() {
+            return None;
+        }
+        let (frame, half) = (self.frame(), self.half_size(aspect).as_dvec2());
+        let [right, up, forward] = [frame.right, frame.up, frame.forward].map(Vec3::as_dvec3);
+        let mut window = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+        for corner in bounds.corners() {
+            let to = corner.as_dvec3() - self.eye.as_dvec3();
+            let (aside, depth) = (DVec2::new(to.dot(right), to.dot(up)), to.dot(forward));
+            let at = match self.projection {
+                Projection::Perspective { .. } if depth > to.length() * 1e-3 => aside / depth,
+                Projection::Perspective { .. } => return Some(EVERYTHING),
+                // The eye's and the target's digits are those of rays, which start in the plane of the eye.
+                Projection::Orthographic { .. } => aside,
+            };
+            let slack = match self.projection {
+                Projection::Perspective { .. } => SLACK * (1.0 + half.max_element() + at.abs().max_element()),
+                Projection::Orthographic { .. } => SLACK * (half.max_element() + to.length() + self.eye.as_dvec3().length()),
+            };
+            window = [window[0].min((at - slack) / half), window[1].max((at + slack) / half)];
+        }
+        let is_number = window.iter().all(|corner| !corner.is_nan());
+        Some(if is_number { window } else { EVERYTHING })
+    }
+
     /// A camera that shows the whole box, seen from `direction` (from the target to the eye), with
     /// a little room around it.
-    pub fn framing(bounds: &crate::geometry::Aabb, direction: Vec3, up: Vec3, aspect: f32) -> Self {
+    pub fn framing(bounds: &Aabb, direction: Vec3, up: Vec3, aspect: f32) -> Self {
         let fov_y = Self::DEFAULT_FOV_Y;
         let camera = Self { eye: direction, target: Vec3::ZERO, up, projection: Projection::Perspective { fov_y } };
         camera.reframed(bounds, aspect)
     }
 
     /// The same direction and projection, moved so that the whole box is seen.
-    pub fn reframed(&self, bounds: &crate::geometry::Aabb, aspect: f32) -> Self {
+    pub fn reframed(&self, bounds: &Aabb, aspect: f32) -> Self {
         let frame = self.frame();
-        let bounds = if bounds.is_empty() { crate::geometry::Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { *bounds };
+        let bounds = if bounds.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { *bounds };
         let centre = bounds.centre();
         let margin = 1.08;
         let corners = bounds.corners().map(|p| p - centre);

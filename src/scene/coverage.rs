@@ -53,14 +53,14 @@ impl<'a> Surface<'a> {
     /// `v` are the weights of the triangle's second and third corner. The same bits on every
     /// machine.
     pub fn alpha(&self, triangle: u32, u: f32, v: f32) -> f32 {
-        let corners = self.mesh.triangles[triangle as usize];
+        let corners = || self.mesh.triangles[triangle as usize];
         let [.., mut alpha] = self.material.base_color;
         if !self.mesh.colors.is_empty() {
-            let [a, b, c] = corners.map(|i| self.mesh.colors[i as usize][3]);
+            let [a, b, c] = corners().map(|i| self.mesh.colors[i as usize][3]);
             alpha *= between(a, b, c, u, v);
         }
         if let (Some(map), Some(by)) = (self.alpha_map, &self.material.alpha_texture) {
-            let uv = by.texture.transform.apply(self.uv(corners, u, v));
+            let uv = by.texture.transform.apply(self.uv(corners(), u, v));
             alpha *= map.value(uv, &by.texture.sampler, by.channel);
         }
         num::min(num::max(alpha, 0.0), 1.0)
@@ -85,17 +85,19 @@ impl<'a> Surface<'a> {
         self.coverage(primitive, u, v) > threshold(instance, primitive, u, v)
     }
 
-    /// The linear colour at a point.
-    pub fn color(&self, triangle: u32, u: f32, v: f32) -> [f32; 3] {
-        let corners = self.mesh.triangles[triangle as usize];
+    /// The linear colour at a point. Where no mesh of the scene has vertex colours, or none an image, these need not be
+    /// looked for (`COLORS`, `MAPS`).
+    #[inline]
+    pub fn color<const COLORS: bool, const MAPS: bool>(&self, triangle: u32, u: f32, v: f32) -> [f32; 3] {
+        let corners = || self.mesh.triangles[triangle as usize];
         let [r, g, b, _] = self.material.base_color;
         let mut color = [r, g, b];
-        if !self.mesh.colors.is_empty() {
-            let at = corners.map(|i| self.mesh.colors[i as usize]);
+        if COLORS && !self.mesh.colors.is_empty() {
+            let at = corners().map(|i| self.mesh.colors[i as usize]);
             color = std::array::from_fn(|c| color[c] * between(at[0][c], at[1][c], at[2][c], u, v));
         }
-        if let (Some(map), Some(by)) = (self.color_map, &self.material.base_color_texture) {
-            let of_map = map.color(by.transform.apply(self.uv(corners, u, v)), &by.sampler);
+        if MAPS && let (Some(map), Some(by)) = (self.color_map, &self.material.base_color_texture) {
+            let of_map = map.color(by.transform.apply(self.uv(corners(), u, v)), &by.sampler);
             color = std::array::from_fn(|c| color[c] * of_map[c]);
         }
         color

@@ -92,7 +92,7 @@ impl Geometry {
     /// # Errors
     /// As [`Self::new`]; the limit of 32 bits holds for what is flattened, and for each mesh.
     pub fn with_instances(scene: &Scene, cx: &LoadCx) -> Result<Self, Reason> {
-        let mut sorted = Sorted::new(scene);
+        let mut sorted = Sorted::new(scene, cx.keep);
         if sorted.all_flat() {
             return Self::new(scene, cx);
         }

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Vec2, Vec3};
 
-/// Triangles with one material, in the space of their object.
+/// Triangles with one material, in the space of their object, as loaded.
 ///
 /// Every attribute list is either empty (the file has none) or as long as `positions`; every index
 /// of a triangle is below `positions.len()`. Loaders see to both.
@@ -10,7 +10,8 @@ use glam::{Affine3A, Vec2, Vec3};
 pub struct Mesh {
     /// What the file calls it; may be empty.
     pub name: String,
-    /// Vertex positions. They may hold NaN or infinities, as the file has them.
+    /// Vertex positions. They may hold NaN or infinities, as the file has them; none once they were given up
+    /// ([`super::Scene::give_up_corners`]).
     pub positions: Vec<Vec3>,
     /// Three vertex indices a triangle, in file order, degenerate ones included.
     pub triangles: Vec<[u32; 3]>,

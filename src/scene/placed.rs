@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::extremes::Extremes;
 use super::geometry::Piece;
-use super::{Counts, Geometry, LoadCx, Reason, Scene};
+use super::{Counts, Geometry, Keep, LoadCx, Reason, Scene};
 use crate::geometry::num::{UNIT_ROUNDOFF, index, round_down, round_up};
 use crate::geometry::space::FAR;
 use crate::geometry::{Aabb, Space};
@@ -66,8 +66,9 @@ pub(super) struct Sorted {
 }
 
 impl Sorted {
-    /// Sorts the instances of a scene.
-    pub fn new(scene: &Scene) -> Self {
+    /// Sorts the instances of a scene: those of meshes that stand in one place are to be flattened, unless everything is
+    /// to be kept as it is.
+    pub fn new(scene: &Scene, keep: Keep) -> Self {
         let mut of_mesh = vec![Vec::new(); scene.meshes.len()];
         let mut sorted = Self { flat: Vec::new(), standing: Vec::new(), vanished: 0 };
         for (i, instance) in scene.instances.iter().enumerate() {
@@ -83,7 +84,7 @@ impl Sorted {
         for (mesh, places) in of_mesh.into_iter().enumerate() {
             match places.len() {
                 0 => {}
-                1 => sorted.flat.push(places[0].0),
+                1 if keep == Keep::Needed => sorted.flat.push(places[0].0),
                 _ => sorted.standing.push((mesh, places)),
             }
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{LoadError, Reason, Scene, builtin, load};
+use super::{Keep, LoadError, Reason, Scene, builtin, load};
 use crate::task::{Budget, Cancel, Pool, Progress};
 
 /// What loading takes besides the name.
@@ -16,12 +16,19 @@ pub struct LoadCx {
     pub budget: Budget,
     /// The threads it may use.
     pub pool: Pool,
+    /// How much of the model is kept.
+    pub keep: Keep,
 }
 
 impl LoadCx {
+    /// Loading that can be stopped, listened to, and limited in memory, and keeps what is needed.
+    pub const fn new(cancel: Cancel, progress: Progress, budget: Budget, pool: Pool) -> Self {
+        Self { cancel, progress, budget, pool, keep: Keep::Needed }
+    }
+
     /// Nothing can stop it, nobody listens, all cores: for tests and small tools.
     pub fn unattended() -> Self {
-        Self { cancel: Cancel::new(), progress: Progress::new(), budget: Budget::half_of_machine(), pool: Pool::new("load", 0) }
+        Self::new(Cancel::new(), Progress::new(), Budget::half_of_machine(), Pool::new("load", 0))
     }
 }
 

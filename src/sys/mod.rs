@@ -26,6 +26,24 @@ pub fn memory_bytes() -> u64 {
     }
 }
 
+/// The most bytes of memory that this process has held at a time, where the system tells it (Linux).
+pub fn peak_memory_bytes() -> Option<u64> {
+    of_status("VmHWM:")
+}
+
+/// The bytes that it holds now, where the system tells that (Linux).
+pub fn held_memory_bytes() -> Option<u64> {
+    of_status("VmRSS:")
+}
+
+/// A line of what Linux says of this process (proc_pid_status(5)).
+fn of_status(name: &str) -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix(name))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kib.checked_mul(1 << 10)
+}
+
 /// The processor's name as the system tells it, `unknown` where it does not.
 pub fn cpu_name() -> String {
     let Ok(mut system) = sysinfo::System::new() else { return "unknown".to_owned() };

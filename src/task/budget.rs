@@ -10,7 +10,7 @@ pub struct Budget(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
-    limit: u64,
+    limit: AtomicU64,
     used: AtomicU64,
 }
 
@@ -40,7 +40,12 @@ pub struct Charge {
 impl Budget {
     /// A budget of `limit` bytes.
     pub fn new(limit: u64) -> Self {
-        Self(Arc::new(Inner { limit, used: AtomicU64::new(0) }))
+        Self(Arc::new(Inner { limit: AtomicU64::new(limit), used: AtomicU64::new(0) }))
+    }
+
+    /// A budget of so many MiB.
+    pub fn of_mib(mib: u64) -> Self {
+        Self::new(mib.saturating_mul(1 << 20))
     }
 
     /// No limit: for tests and tools that know what they do.
@@ -55,7 +60,12 @@ impl Budget {
 
     /// Bytes of the whole budget.
     pub fn limit(&self) -> u64 {
-        self.0.limit
+        self.0.limit.load(Ordering::Relaxed)
+    }
+
+    /// Sets another limit. What is charged already stays, even if it is more.
+    pub fn set_limit(&self, limit: u64) {
+        self.0.limit.store(limit, Ordering::Relaxed);
     }
 
     /// Bytes charged now.
@@ -65,10 +75,11 @@ impl Budget {
 
     /// Takes `bytes`, or says by how much they do not fit.
     pub fn charge(&self, bytes: u64) -> Result<Charge, OverBudget> {
-        let fits = |used: u64| used.checked_add(bytes).filter(|sum| *sum <= self.0.limit);
+        let limit = self.limit();
+        let fits = |used: u64| used.checked_add(bytes).filter(|sum| *sum <= limit);
         match self.0.used.try_update(Ordering::Relaxed, Ordering::Relaxed, fits) {
             Ok(_) => Ok(Charge { budget: self.clone(), bytes }),
-            Err(used) => Err(OverBudget { asked: bytes, left: self.0.limit - used, limit: self.0.limit }),
+            Err(used) => Err(OverBudget { asked: bytes, left: limit.saturating_sub(used), limit }),
         }
     }
 }
@@ -116,8 +127,11 @@ mod tests {
         assert_eq!(held.bytes(), 100);
         held.shrink(30);
         assert_eq!((budget.used(), held.bytes()), (30, 30));
+        budget.set_limit(20);
+        assert_eq!(budget.charge(1).expect_err("less than is held").left, 0);
         drop(held);
         assert_eq!(budget.used(), 0);
+        assert!(budget.charge(20).is_ok() && budget.charge(21).is_err());
         assert!(budget.charge(u64::MAX).is_err());
     }
 }

@@ -65,13 +65,12 @@ impl App {
         options.apply(&mut settings);
 
         let ctx = cc.egui_ctx.clone();
-        let budget = options.memory_bytes.map_or_else(Budget::half_of_machine, Budget::new);
+        let budget = options.memory_mib.or(settings.memory_mib).map_or_else(Budget::half_of_machine, Budget::of_mib);
         let shared = Shared { pool: Pool::new("work", options.threads), budget, wake: Arc::new(move || ctx.request_repaint()) };
         let mut state = State::new(settings, shared, dialog, Graphics::of(cc.wgpu_render_state.as_ref()))?;
         state.first_camera = options.camera;
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
-        let screenshot =
-            options.screenshot.clone().map(|path| Screenshot::new(path, options.measure, options.check, options.pace));
+        let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
         let layout = if options.is_scripted() { SCRIPTED } else { 0 };
         let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout };
         app.follow_settings(&cc.egui_ctx);
@@ -216,14 +215,18 @@ impl eframe::App for App {
             self.take_dropped(ctx);
             panels::menu::keys(ctx, &self.state, &mut self.commands);
         }
+        if self.screenshot.is_none() {
+            let hidden = |i: &egui::InputState| i.viewport().minimized == Some(true) || i.viewport().occluded == Some(true);
+            self.state.hide(ctx.input(hidden));
+        }
         self.carry_out(ctx);
         self.state.advance();
         if let Some(screenshot) = self.screenshot.as_mut().filter(|_| !is_repeated(ctx)) {
             screenshot.advance(ctx, &self.state, &mut self.pace, &mut self.commands);
         }
         // Progress bars move; everything else wakes the window itself.
-        let (state, checks) = (&self.state, &self.state.checks);
-        let measured = state.measuring.is_some() || checks.running.is_some() || checks.checking.is_some();
+        let state = &self.state;
+        let measured = state.measuring.is_some() || state.is_checking();
         if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }

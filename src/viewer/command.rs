@@ -2,6 +2,7 @@
 //! command, and [`super::state::State::carry_out`] does it afterwards.
 
 use super::checks::Cell;
+use super::model::Instances;
 use super::settings::{Navigation, OverlaySettings, ThemeChoice, Workspace};
 use crate::accel::params::ParamValues;
 use crate::geometry::tri::TestKind;
@@ -58,6 +59,12 @@ pub enum Command {
     Measure,
     /// Stop timing.
     CancelMeasure,
+    /// Measure what leaving out saves for the open model.
+    MeasureNeeds,
+    /// Stop that.
+    CancelNeeds,
+    /// Keep meshes that stand in several places once, or flatten them; the model is opened anew.
+    Instances(Instances),
     /// Another workspace.
     Workspace(Workspace),
     /// Run the stability lab.
@@ -74,6 +81,8 @@ pub enum Command {
     MarkModel(Option<usize>),
     /// Put away the message.
     Dismiss,
+    /// The memory budget in MiB, or half of the machine.
+    Memory(Option<u64>),
     /// Light, dark, or as the system has it.
     Theme(ThemeChoice),
     /// Which button does what.

@@ -5,6 +5,7 @@ pub mod app;
 pub mod checks;
 pub mod command;
 pub mod dialogs;
+mod endurance;
 pub mod format;
 pub mod gpu;
 mod graphics;

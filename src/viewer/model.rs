@@ -9,8 +9,7 @@ use crate::geometry::{Aabb, Ray};
 use crate::lab::stability::cases;
 use crate::render::Looks;
 use crate::scene::texture::Textures;
-use crate::scene::{self, Geometry, LoadCx, LoadError, Reason, Scene};
-use crate::task::{Budget, Cancel, Pool, Progress};
+use crate::scene::{self, Finding, Geometry, Keep, LoadCx, LoadError, Reason, Scene};
 
 /// A model that is open.
 #[derive(Clone, Debug)]
@@ -25,6 +24,8 @@ pub struct Model {
     pub load_secs: f64,
     /// Its textures, as far as they are there.
     pub looks: Arc<Looks>,
+    /// What it uses and what is left out, by what is known of its textures.
+    pub needs: Arc<[Finding]>,
     /// The rays of a case of the stability lab; none of anything else.
     pub rays: Arc<Vec<Ray>>,
 }
@@ -54,26 +55,39 @@ fn case(model: &str) -> Option<Result<(Scene, Vec<Ray>), LoadError>> {
     Some(Ok((trial.scene(model), trial.rays)))
 }
 
-/// Loads a model; meshes that stand in several places are kept once.
+/// What is made of the instances of a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Instances {
+    /// Meshes that stand in several places are kept once.
+    #[default]
+    Kept,
+    /// Every instance becomes triangles of its own.
+    Flattened,
+}
+
+/// Loads a model.
 ///
 /// # Errors
 /// [`LoadError`], with the file, the place and the reason.
-pub fn load(
-    model: &str,
-    generation: u64,
-    budget: &Budget,
-    pool: &Pool,
-    cancel: &Cancel,
-    progress: &Progress,
-) -> Result<Model, LoadError> {
+pub fn load(model: &str, generation: u64, instances: Instances, cx: &LoadCx) -> Result<Model, LoadError> {
     let start = Instant::now();
-    let cx = LoadCx { cancel: cancel.clone(), progress: progress.clone(), budget: budget.clone(), pool: pool.clone() };
-    let (scene, rays) = case(model).unwrap_or_else(|| Ok((scene::open(model, &cx)?, Vec::new())))?;
-    let geometry = Geometry::with_instances(&scene, &cx).map_err(|reason| reason.of(model))?;
-    let geometry = Arc::new(geometry);
+    let (mut scene, rays) = case(model).unwrap_or_else(|| Ok((scene::open(model, cx)?, Vec::new())))?;
+    if cx.keep == Keep::All {
+        scene.fill_in();
+    }
+    let gather = match instances {
+        Instances::Kept => Geometry::with_instances,
+        Instances::Flattened => Geometry::new,
+    };
+    let geometry = Arc::new(gather(&scene, cx).map_err(|reason| reason.of(model))?);
+    if cx.keep == Keep::Needed {
+        scene.give_up_corners();
+    }
     let raster = Arc::new(RasterMesh::new(generation, Arc::clone(&geometry)));
     let looks = Arc::new(Looks::new(&scene, Textures::none()));
-    Ok(Model { scene: Arc::new(scene), geometry, looks, raster, load_secs: start.elapsed().as_secs_f64(), rays: Arc::new(rays) })
+    let needs = looks.needs().findings(&scene).into();
+    let load_secs = start.elapsed().as_secs_f64();
+    Ok(Model { scene: Arc::new(scene), geometry, looks, needs, raster, load_secs, rays: Arc::new(rays) })
 }
 
 impl Model {

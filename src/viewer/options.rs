@@ -35,12 +35,14 @@ pub struct ViewerOptions {
     pub check: bool,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
+    /// Switch structures a thousand times and open fifty models before that, to see what becomes of the memory.
+    pub endure: bool,
     /// Save a picture of the window here once everything is there, and close.
     pub screenshot: Option<PathBuf>,
     /// Threads that load, build and measure; 0 for one a core.
     pub threads: usize,
-    /// The memory budget.
-    pub memory_bytes: Option<u64>,
+    /// The memory budget in MiB.
+    pub memory_mib: Option<u64>,
 }
 
 impl ViewerOptions {

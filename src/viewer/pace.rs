@@ -57,10 +57,13 @@ impl Pace {
         let first = self.first.map(|a| format!("first picture (1/{} resolution) {} later; ", a.step, format::duration(a.secs)));
         let full = self.full.map(|secs| format!("one sample a pixel after {}; ", format::duration(secs)));
         let frames = format!(
-            "longest frame {} while loading or building, {} in all, of {}",
+            "longest frame {} while loading or building, {} in all, of {}{}",
             format::duration(self.longest_busy),
             format::duration(self.longest),
-            format::count(self.frames)
+            format::count(self.frames),
+            crate::sys::peak_memory_bytes()
+                .map(|peak| format!("; at most {} of memory", format::bytes(peak)))
+                .unwrap_or_default()
         );
         let turns = answers("after a turn of the camera", &self.turns);
         let switches = answers("after a switch to a kept structure", &self.switches);

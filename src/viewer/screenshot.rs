@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 use eframe::egui::{ColorImage, Context, ScreenshotCallback, ViewportCommand};
 
 use super::command::Command;
+use super::endurance::Endurance;
+use super::options::ViewerOptions;
 use super::pace::Pace;
 use super::panels::Commands;
 use super::rehearsal::Rehearsal;
@@ -22,6 +24,9 @@ pub struct Screenshot {
     measure: bool,
     check: bool,
     rehearsal: Option<Rehearsal>,
+    endurance: Option<Endurance>,
+    /// What the long run found, in words.
+    endured: String,
     stage: Stage,
     start: Instant,
     /// The picture, once the window has it.
@@ -34,6 +39,8 @@ enum Stage {
     Settling,
     /// Turning the camera, switching structures.
     Rehearsing,
+    /// The same for long, and opening models.
+    Enduring,
     /// Timing every structure.
     Measuring,
     /// Running the stability lab.
@@ -52,9 +59,18 @@ const PATIENCE: Duration = Duration::from_secs(600);
 
 impl Screenshot {
     /// A picture for `path`, after measuring or checking, and trying how soon the window answers, if asked for.
-    pub fn new(path: PathBuf, measure: bool, check: bool, pace: bool) -> Self {
-        let rehearsal = pace.then(Rehearsal::default);
-        Self { path, measure, check, rehearsal, stage: Stage::Settling, start: Instant::now(), taken: Arc::default() }
+    pub fn new(path: PathBuf, options: &ViewerOptions) -> Self {
+        Self {
+            path,
+            measure: options.measure,
+            check: options.check,
+            rehearsal: options.pace.then(Rehearsal::default),
+            endurance: options.endure.then(Endurance::default),
+            endured: String::new(),
+            stage: Stage::Settling,
+            start: Instant::now(),
+            taken: Arc::default(),
+        }
     }
 
     /// Looks whether it is time, once a frame.
@@ -66,6 +82,13 @@ impl Screenshot {
             Stage::Rehearsing => {
                 if self.rehearsal.as_mut().is_none_or(|r| r.advance(state, pace, commands)) {
                     (self.rehearsal, self.stage) = (None, Stage::Settling);
+                }
+            }
+            Stage::Settling if settled && self.endurance.is_some() => self.stage = Stage::Enduring,
+            Stage::Enduring => {
+                if self.endurance.as_mut().is_none_or(|endurance| endurance.advance(state, commands)) {
+                    self.endured = self.endurance.take().map(|endurance| endurance.report()).unwrap_or_default();
+                    self.stage = Stage::Settling;
                 }
             }
             Stage::Settling if settled && self.measure => {
@@ -98,7 +121,7 @@ impl Screenshot {
                     if let Err(why) = save(&self.path, &image) {
                         eprintln!("boxwood: Can't write {}: {why}", self.path.display());
                     }
-                    eprintln!("{}", pace.report(state));
+                    eprintln!("{}{}", self.endured, pace.report(state));
                     self.stage = Stage::Done;
                     ctx.send_viewport_cmd(ViewportCommand::Close);
                 }

@@ -33,6 +33,8 @@ pub struct Settings {
     pub navigation: Navigation,
     /// How much everything is enlarged.
     pub scale: f32,
+    /// The memory budget in MiB; `None` for half of the machine.
+    pub memory_mib: Option<u64>,
 }
 
 /// The most files in the list of recent ones.
@@ -54,6 +56,7 @@ impl Default for Settings {
             theme: ThemeChoice::default(),
             navigation: Navigation::default(),
             scale: 1.0,
+            memory_mib: None,
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::mpsc::Sender;
 
 use super::checks::{RAYS, SEED};
 use super::kept::{Built, Key};
-use super::model::{self, Model};
+use super::model::{self, Instances, Model};
 use super::overlay::{self, Collected, Wanted};
 use super::pick::{self, Picked};
 use crate::accel::registry;
@@ -15,13 +15,14 @@ use crate::accel::{Accel, BuildCx, BuildError, Cell};
 use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::job::Job;
+use crate::lab::needs::{Kept, NeedsReport};
 use crate::lab::stability::{self, CaseRow, cases};
 use crate::lab::{
     self, CheckError, Checked, Contestant, Costs, Enough, FitOptions, MeasureOptions, ModelCheck, Quality, QualityOptions,
     RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure, measure_with_raster, sah_curves,
 };
 use crate::render::{self, Looks};
-use crate::scene::{Camera, Geometry, LoadCx, LoadError, Scene};
+use crate::scene::{Camera, Finding, Geometry, Keep, LoadCx, LoadError, Scene};
 use crate::task::{Budget, Cancelled, Pool, Progress};
 
 /// What every job needs: threads, memory, and a way to wake the window.
@@ -46,9 +47,12 @@ impl Shared {
 pub type Loading = Job<Result<Model, LoadError>>;
 
 /// Starts loading.
-pub fn load(shared: &Shared, model: String, generation: u64) -> std::io::Result<Loading> {
+pub fn load(shared: &Shared, model: String, generation: u64, instances: Instances) -> std::io::Result<Loading> {
     let Shared { pool, budget, .. } = shared.clone();
-    Job::spawn("load", shared.waker(), move |cancel, progress| model::load(&model, generation, &budget, &pool, cancel, progress))
+    Job::spawn("load", shared.waker(), move |cancel, progress| {
+        let cx = LoadCx::new(cancel.clone(), progress.clone(), budget, pool);
+        model::load(&model, generation, instances, &cx)
+    })
 }
 
 /// A structure on its way.
@@ -100,15 +104,43 @@ pub fn count(shared: &Shared, built: &Built) -> std::io::Result<Counting> {
     Ok((built.key.clone(), job))
 }
 
-/// Textures on their way.
-pub type Decoding = Job<Result<Looks, Cancelled>>;
+/// Textures on their way, and what is known of the scene's needs with them.
+pub type Decoding = Job<Result<(Looks, Vec<Finding>), Cancelled>>;
 
 /// Starts decoding the textures of a scene.
 pub fn decode(shared: &Shared, scene: Arc<Scene>) -> std::io::Result<Decoding> {
     let Shared { pool, budget, .. } = shared.clone();
     Job::spawn("textures", shared.waker(), move |cancel, progress| {
-        let cx = LoadCx { cancel: cancel.clone(), progress: progress.clone(), budget, pool };
-        Looks::decode(&scene, &cx)
+        let cx = LoadCx::new(cancel.clone(), progress.clone(), budget, pool);
+        let looks = Looks::decode(&scene, &cx)?;
+        let needs = looks.needs().findings(&scene);
+        Ok((looks, needs))
+    })
+}
+
+/// What leaving out saves, on its way; or why that can't be told.
+pub type Needing = Job<Result<NeedsReport, String>>;
+
+/// Starts measuring what leaving out saves: the model is loaded once more, with everything that it has, and its structure
+/// is built. The renderer is kept from running meanwhile.
+pub fn needs(
+    shared: &Shared,
+    (model, shown): (&Model, &Built),
+    view: (Camera, [u32; 2]),
+    pause: render::progressive::Pause,
+) -> std::io::Result<Needing> {
+    let Shared { pool, budget, .. } = shared.clone();
+    let (scene, geometry, looks) = (Arc::clone(&model.scene), Arc::clone(&model.geometry), Arc::clone(&model.looks));
+    let (kept, key) = (Kept { scene, geometry, accel: Arc::clone(&shown.accel), looks }, shown.key.clone());
+    Job::spawn("needs", shared.waker(), move |cancel, progress| {
+        pause.wait();
+        let cx = LoadCx { keep: Keep::All, ..LoadCx::new(cancel.clone(), progress.clone(), budget.clone(), pool.clone()) };
+        let forced = model::load(&kept.scene.name, 0, Instances::Kept, &cx).map_err(|why| why.to_string())?;
+        let looks = Arc::new(Looks::decode(&forced.scene, &cx).map_err(|why| why.to_string())?);
+        let build_cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
+        let accel = build_now(key, &forced.geometry, &build_cx).map_err(|why| why.to_string())?.accel;
+        let forced = Kept { scene: forced.scene, geometry: forced.geometry, accel, looks };
+        lab::needs::needs(&kept, &forced, view, cancel, progress).map_err(|why| why.to_string())
     })
 }
 

@@ -17,7 +17,7 @@ use glam::Vec3;
 use tree::Tree;
 
 fn geometry(model: &str) -> Arc<Geometry> {
-    let cx = LoadCx { cancel: Cancel::new(), progress: Progress::new(), budget: Budget::unlimited(), pool: Pool::new("load", 1) };
+    let cx = LoadCx::new(Cancel::new(), Progress::new(), Budget::unlimited(), Pool::new("load", 1));
     let scene = open_scene(model, &cx).expect("a built-in scene");
     Arc::new(Geometry::new(&scene, &cx).expect("small"))
 }

@@ -46,8 +46,7 @@ impl Ground {
     /// # Errors
     /// Cancelled, or it would not fit.
     pub fn new(name: &str, trial: &Trial, cx: &BuildCx) -> Result<Self, Reason> {
-        let load =
-            LoadCx { cancel: cx.cancel.clone(), progress: cx.progress.clone(), budget: cx.budget.clone(), pool: cx.pool.clone() };
+        let load = LoadCx::new(cx.cancel.clone(), cx.progress.clone(), cx.budget.clone(), cx.pool.clone());
         Ok(Self { geometry: Arc::new(Geometry::new(&trial.scene(name), &load)?), closed: trial.closed })
     }
 

@@ -43,7 +43,7 @@ fn factor_vertices_and_texture_multiply() {
     let textures = decoded(&scene);
     let surface = Surface::new(&scene, 0, &textures);
     assert!((surface.alpha(0, 0.25, 0.25) - 0.5 * 0.5 * 0.2).abs() < 1e-7);
-    assert_eq!(surface.color(0, 0.25, 0.25), [0.5, 1.0, 0.5]);
+    assert_eq!(surface.color::<true, true>(0, 0.25, 0.25), [0.5, 1.0, 0.5]);
     scene.meshes[0].uvs.clear();
     assert_eq!(Surface::new(&scene, 0, &textures).alpha(0, 0.25, 0.25), 0.25, "no coordinates, no texture");
 }

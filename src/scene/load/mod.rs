@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 pub use bytes::Bytes;
 
-use super::{LoadCx, Mesh, Reason, Scene, texture};
+use super::{Keep, LoadCx, Mesh, Reason, Scene, needs};
 use crate::task::Charge;
 
 /// A reader of one format.
@@ -68,7 +68,9 @@ pub fn file(path: &Path, cx: &LoadCx) -> Result<Scene, Reason> {
     let (bytes, _memory) = disk::read(path, cx, |n| cx.progress.advance(n))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut scene = loader.load(&bytes, &disk::Folder::new(folder, cx), cx)?;
-    texture::drop_idle_uvs(&mut scene);
+    if cx.keep == Keep::Needed {
+        needs::drop_idle(&mut scene);
+    }
     Ok(scene)
 }
 

@@ -17,7 +17,7 @@ pub use sampler::{Filter, Sampler, Wrap};
 pub use source::{Image, ImageSource};
 pub use texels::{Channel, Texture};
 pub use textures::Textures;
-pub(super) use uses::{drop_idle_uvs, shown_materials};
+pub(super) use uses::shown_materials;
 pub use uv_transform::UvTransform;
 
 /// How a material uses an image. Which of a file's sets of texture coordinates it refers to is no

@@ -8,6 +8,8 @@ pub(super) struct Wanted {
     pub color: bool,
     /// The channels that single values are read from, each once.
     pub channels: Vec<Channel>,
+    /// Everything is kept, read or not.
+    pub whole: bool,
 }
 
 impl Wanted {
@@ -19,6 +21,9 @@ impl Wanted {
 
 /// Makes a texture of texels of any layout, in place.
 pub(super) fn pack((width, height): (usize, usize), mut layout: Layout, mut texels: Vec<u8>, wanted: &Wanted) -> Texture {
+    if wanted.whole {
+        return Texture { width, height, layout, texels, full: false };
+    }
     let without_alpha = match layout {
         Layout::GreyAlpha => Some(Layout::Grey),
         Layout::Rgba => Some(Layout::Rgb),

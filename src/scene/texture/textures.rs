@@ -11,7 +11,7 @@ use super::pack::Wanted;
 use super::source::Image;
 use super::texels::Texture;
 use super::uses;
-use crate::scene::{LoadCx, Scene};
+use crate::scene::{Keep, LoadCx, Scene};
 use crate::task::{Cancelled, Charge};
 
 /// The decoded images of a scene. Apart from it, because a scene is shown before they are there.
@@ -40,13 +40,17 @@ impl Textures {
         Self::default()
     }
 
-    /// Decodes the images that are seen, each once, on as many threads as the pool has. One that
+    /// Decodes the images that are seen (or all of them, see [`Keep`]), each once, on as many threads as the pool has. One that
     /// cannot be read is a warning, and white.
     ///
     /// # Errors
     /// [`Cancelled`], at once: images that are being decoded are left to end by themselves.
     pub fn decode(scene: &Scene, cx: &LoadCx) -> Result<Self, Cancelled> {
-        let wanted = scene.images.iter().zip(uses::wanted(scene)).enumerate();
+        let wanted = match cx.keep {
+            Keep::Needed => uses::wanted(scene),
+            Keep::All => vec![Some(Wanted { whole: true, ..Wanted::default() }); scene.images.len()],
+        };
+        let wanted = scene.images.iter().zip(wanted).enumerate();
         let jobs = wanted.filter_map(|(image, (what, wanted))| Some(Job { image, what: what.clone(), wanted: wanted? }));
         let jobs: Arc<[Job]> = jobs.collect();
         cx.progress.start("textures", jobs.len() as u64);

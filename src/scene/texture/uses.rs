@@ -1,17 +1,7 @@
-//! What of a scene's images and texture coordinates is seen at all.
+//! What of a scene's images is seen at all.
 
 use super::pack::Wanted;
-use crate::scene::{Alpha, Material, Mesh, Scene};
-
-/// Frees the texture coordinates of meshes whose material reads no image.
-pub(in crate::scene) fn drop_idle_uvs(scene: &mut Scene) {
-    for mesh in &mut scene.meshes {
-        let material: Option<&Material> = mesh.material.and_then(|m| scene.materials.get(m));
-        if !material.is_some_and(Material::is_textured) {
-            mesh.uvs = Vec::new();
-        }
-    }
-}
+use crate::scene::{Alpha, Mesh, Scene};
 
 /// For each material, whether its textures show: whether a mesh of it is placed and has texture
 /// coordinates.

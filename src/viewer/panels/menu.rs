@@ -5,6 +5,7 @@ use eframe::egui::{self, Align, Key, KeyboardShortcut, Layout, MenuBar, Modifier
 use super::Commands;
 use crate::scene::builtin;
 use crate::viewer::command::Command;
+use crate::viewer::format;
 use crate::viewer::settings::{Navigation, SCALE, ThemeChoice, Workspace};
 use crate::viewer::state::State;
 
@@ -111,6 +112,7 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.building.is_some(), Command::CancelBuild),
         (state.loading.is_some(), Command::CancelLoad),
         (state.error.is_some(), Command::Dismiss),
+        (state.needing.is_some(), Command::CancelNeeds),
         (state.checks.checking.is_some(), Command::CancelCheck),
         // In another workspace nobody sees that it runs.
         (state.checks.running.is_some() && state.settings.workspace == Workspace::Check, Command::CancelLab),
@@ -193,6 +195,7 @@ fn view(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
     });
+    ui.menu_button("Memory", |ui| memory(ui, state, commands));
     ui.menu_button("Mouse", |ui| {
         for (choice, text) in [
             (Navigation::Standard, "Left orbits, middle pans"),
@@ -203,6 +206,22 @@ fn view(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
     });
+}
+
+/// How much the work may take. Structures that are kept go first where it is less than is held.
+fn memory(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let (used, limit) = state.memory();
+    super::empty(ui, &format!("{} of {} in use", format::bytes(used), format::bytes(limit)));
+    let chosen = state.settings.memory_mib;
+    if ui.radio(chosen.is_none(), "Half of the machine").clicked() {
+        commands.push(Command::Memory(None));
+    }
+    let gibs = [1, 2, 4, 8, 16, 32, 64, 128].into_iter().filter(|gib| gib << 30 <= state.machine_bytes);
+    for gib in gibs {
+        if ui.radio(chosen == Some(gib << 10), format::bytes(gib << 30)).clicked() {
+            commands.push(Command::Memory(Some(gib << 10)));
+        }
+    }
 }
 
 fn window(ui: &mut Ui, state: &State, commands: &mut Commands) {

@@ -6,6 +6,7 @@ pub mod captions;
 pub mod check;
 pub mod help;
 pub mod menu;
+pub mod needs;
 pub mod overlay;
 pub mod path;
 pub mod prediction;

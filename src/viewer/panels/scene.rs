@@ -1,10 +1,12 @@
 //! What is open: name, size, what was left out, warnings.
 
-use eframe::egui::{CollapsingHeader, ProgressBar, RichText, Ui};
+use eframe::egui::{Checkbox, CollapsingHeader, ProgressBar, RichText, Ui};
 
 use super::{Commands, empty, fact, heading};
+use crate::scene::Feature;
 use crate::viewer::command::Command;
 use crate::viewer::format;
+use crate::viewer::model::Instances;
 use crate::viewer::state::State;
 use crate::viewer::theme::Palette;
 
@@ -35,6 +37,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if scene.instances.len() > 1 {
         let help = "How many times meshes are placed, and how many different meshes there are.";
         fact(ui, "Instances of meshes", format!("{} of {}", scene.instances.len(), scene.meshes.len()), help);
+        instances(ui, state, commands);
     }
     let size = model.bounds().size();
     let extent =
@@ -55,6 +58,19 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
     let all: Vec<&String> = scene.warnings.iter().chain(textures.warnings()).collect();
     warnings(ui, &all);
+}
+
+/// Whether meshes that stand in several places are kept once: only where there are some.
+fn instances(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let Some(model) = &state.model else { return };
+    let repeats = model.needs.iter().any(|finding| finding.feature == Feature::Instancing && finding.used);
+    let mut flat = model.geometry.placed().is_none();
+    let help = "Make every instance triangles of its own, in one structure, instead of one structure for each mesh and a level above. The model is opened anew.";
+    if repeats
+        && ui.add_enabled(state.loading.is_none(), Checkbox::new(&mut flat, "Flatten instances")).on_hover_text(help).clicked()
+    {
+        commands.push(Command::Instances(if flat { Instances::Flattened } else { Instances::Kept }));
+    }
 }
 
 fn left_out(ui: &mut Ui, name: &str, count: u64, help: &str) {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{CollapsingHeader, RichText, Ui};
 
-use super::{Commands, bars, empty, fact, heading, prediction};
+use super::{Commands, bars, empty, fact, heading, needs, prediction};
 use crate::accel::stats::{LEAF_SIZES, Stats};
 use crate::viewer::format;
 use crate::viewer::kept::Built;
@@ -32,6 +32,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     prediction::show(ui, state, built, commands);
     histograms(ui, built, stats);
     memory(ui, stats, triangles);
+    needs::show(ui, state, commands);
 }
 
 fn build_time(ui: &mut Ui, built: &Built) {

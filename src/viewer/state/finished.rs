@@ -41,6 +41,9 @@ impl State {
         let spec = self.first_camera.take();
         self.camera = CameraSpec::or_first(spec.as_ref(), &model.scene, &model.geometry, self.aspect());
         self.framed = spec.is_none().then_some((self.camera, self.size_px));
+        if let Some(camera) = self.reopened.take() {
+            (self.camera, self.framed) = (camera, None);
+        }
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
         (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
         self.picking = None;
@@ -49,6 +52,7 @@ impl State {
         (self.seen, self.counted) = (None, None);
         (self.cameras, self.choices) = (History::default(), History::default());
         self.kept.clear();
+        (self.needs, self.needing) = (None, None);
         self.timings = Timings::default();
         self.checks.opened();
         if self.checks.selected.is_some_and(|cell| model::case_name(cell.case) == name) {
@@ -119,9 +123,9 @@ impl State {
         match self.decoding.take() {
             Some(job) => match job.poll() {
                 Outcome::Running => self.decoding = Some(job),
-                Outcome::Done(Ok(looks)) => {
+                Outcome::Done(Ok((looks, needs))) => {
                     if let Some(model) = &mut self.model {
-                        model.looks = Arc::new(looks);
+                        (model.looks, model.needs) = (Arc::new(looks), needs.into());
                     }
                     self.textures_are_there = true;
                 }
@@ -190,6 +194,17 @@ impl State {
             Outcome::Died => self.fail("Can't measure: the measurement failed.".to_owned()),
         }
         self.measuring = None;
+    }
+
+    pub(super) fn advance_needs(&mut self) {
+        let Some(job) = &self.needing else { return };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(report)) => self.needs = Some(report),
+            Outcome::Done(Err(why)) => self.fail(format!("Can't measure what is left out: {}", sentence(&why))),
+            Outcome::Died => self.fail("Can't measure what is left out: the measurement failed.".to_owned()),
+        }
+        self.needing = None;
     }
 }
 

@@ -18,19 +18,23 @@ use super::gpu::Overlay;
 use super::graphics::Graphics;
 use super::history::{Choices, History, Kind};
 use super::kept::{Built, Kept, Key};
-use super::model::Model;
+use super::model::{Instances, Model};
 use super::navigation;
 use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
 use super::settings::Settings;
 use super::timings::Timings;
-use super::workers::{self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Picking, Plan, Shared};
+use super::workers::{
+    self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Needing, Picking, Plan, Shared,
+};
 use crate::accel::{CellId, cell};
 use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
+use crate::lab::needs::NeedsReport;
+use crate::render::progressive::Pause;
 use crate::render::{self, Mode, Picture, Range, Renderer};
 use crate::scene::{Camera, CameraSpec};
-use crate::task::Pool;
+use crate::task::{Budget, Pool};
 use glam::Vec2;
 
 /// How long the window says what a switch of structures changed.
@@ -91,6 +95,18 @@ pub struct State {
     pub building: Option<Building>,
     /// What is being measured.
     pub measuring: Option<Measuring>,
+    /// What leaving out saves for the open model, once it was measured.
+    pub needs: Option<NeedsReport>,
+    /// That, on its way.
+    pub needing: Option<Needing>,
+    /// What becomes of the instances of models that are opened.
+    pub instances: Instances,
+    /// The view to go on with when the same model was opened anew.
+    reopened: Option<Camera>,
+    /// Keeps the renderer at rest while nobody sees the window.
+    hidden: Option<Pause>,
+    /// Bytes of memory that the machine has.
+    pub machine_bytes: u64,
     kept: Kept,
     /// The structure of which a picture is on the screen: what is worked out beside it comes after.
     seen: Option<Key>,
@@ -182,6 +198,12 @@ impl State {
             loading: None,
             building: None,
             measuring: None,
+            needs: None,
+            needing: None,
+            instances: Instances::default(),
+            reopened: None,
+            hidden: None,
+            machine_bytes: crate::sys::memory_bytes(),
             kept: Kept::default(),
             seen: None,
             counted: None,
@@ -216,9 +238,9 @@ impl State {
         self.measuring.is_some()
     }
 
-    /// Whether the lab runs or the model is checked, which would disturb a measurement.
+    /// Whether the lab runs, the model is checked, or what it needs is measured, which would disturb a measurement.
     pub fn is_checking(&self) -> bool {
-        self.checks.running.is_some() || self.checks.checking.is_some()
+        self.checks.running.is_some() || self.checks.checking.is_some() || self.needing.is_some()
     }
 
     /// Width over height of the viewport.
@@ -296,6 +318,9 @@ impl State {
             Command::ToggleProjection => self.look(navigation::toggle_projection(&self.camera), Kind::Single),
             Command::MaxSamples(n) => self.settings.max_samples = n.max(1),
             Command::Measure => self.measure(),
+            Command::MeasureNeeds => self.measure_needs(),
+            Command::CancelNeeds => self.needing = None,
+            Command::Instances(instances) => self.reopen(instances),
             Command::Workspace(workspace) => self.settings.workspace = workspace,
             Command::RunLab => self.run_lab(),
             Command::CancelLab => self.checks.running = None,
@@ -304,6 +329,7 @@ impl State {
             Command::CancelCheck => self.checks.checking = None,
             Command::MarkModel(which) => self.checks.mark_model(which),
             Command::Dismiss => self.error = None,
+            Command::Memory(mib) => self.set_memory(mib),
             Command::Theme(theme) => self.settings.theme = theme,
             Command::Navigation(navigation) => self.settings.navigation = navigation,
             Command::Scale(scale) => self.settings.scale = scale,
@@ -356,9 +382,55 @@ impl State {
         self.error = None;
         self.checks.checking = None;
         self.generation += 1;
-        match workers::load(&self.shared, model.clone(), self.generation) {
+        self.reopened = None;
+        match workers::load(&self.shared, model.clone(), self.generation, self.instances) {
             Ok(job) => self.loading = Some((model, job)),
             Err(e) => self.fail(format!("Can't open {model}: {e}.")),
+        }
+    }
+
+    /// Opens the same model with its instances kept or flattened.
+    fn reopen(&mut self, instances: Instances) {
+        self.instances = instances;
+        if let Some(name) = self.model.as_ref().map(|model| model.scene.name.clone()) {
+            self.open(name);
+            self.reopened = Some(self.camera);
+        }
+    }
+
+    /// Limits the memory; kept structures go until the others fit.
+    fn set_memory(&mut self, mib: Option<u64>) {
+        self.settings.memory_mib = mib;
+        let budget = &self.shared.budget;
+        budget.set_limit(mib.map_or_else(Budget::half_of_machine, Budget::of_mib).limit());
+        let shown = self.shown.as_ref().map(|built| &built.key);
+        while budget.used() > budget.limit() && self.kept.drop_oldest(shown) {}
+    }
+
+    /// Tells whether anybody can see the window: what nobody sees is not traced.
+    pub fn hide(&mut self, hidden: bool) {
+        if hidden != self.hidden.is_some() {
+            self.hidden = hidden.then(|| self.renderer.pause());
+        }
+    }
+
+    /// Bytes that are charged, and the most there may be.
+    pub fn memory(&self) -> (u64, u64) {
+        (self.shared.budget.used(), self.shared.budget.limit())
+    }
+
+    fn measure_needs(&mut self) {
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
+        if self.is_checking() || self.is_measuring() {
+            return;
+        }
+        /// Columns of the rays that times are taken with.
+        const COLUMNS: u32 = 256;
+        let [width, height] = self.size_px;
+        let size = [COLUMNS, (COLUMNS * height).div_ceil(width.max(1)).clamp(1, COLUMNS * 2)];
+        match workers::needs(&self.shared, (model, shown), (self.camera, size), self.renderer.pause()) {
+            Ok(job) => self.needing = Some(job),
+            Err(e) => self.fail(format!("Can't measure: {e}.")),
         }
     }
 
@@ -463,6 +535,7 @@ impl State {
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();
+        self.advance_needs();
         self.advance_lab();
         self.advance_check();
         self.follow_viewport();

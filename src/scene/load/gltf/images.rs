@@ -1,4 +1,4 @@
-//! The images that are seen: where they are, or a copy of their bytes. Of others nothing is kept.
+//! The images that are seen: where they are, or a copy of their bytes. Of others nothing is kept, unless all is to be.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use super::uri;
 use crate::scene::load::Siblings;
 use crate::scene::load::text::clipped;
 use crate::scene::texture::{Image, ImageSource, TextureUse, shown_materials};
-use crate::scene::{AlphaTexture, LoadCx, Reason, Scene};
+use crate::scene::{AlphaTexture, Keep, LoadCx, Reason, Scene};
 use crate::task::Charge;
 
 pub(super) struct Images<'a, 'b> {
@@ -42,6 +42,11 @@ impl Images<'_, '_> {
             material.base_color_texture = index.map(|image| TextureUse { image, ..texture });
             let of_alpha = material.base_color_texture.zip(alpha);
             material.alpha_texture = of_alpha.map(|(texture, alpha)| AlphaTexture { texture, ..alpha });
+        }
+        if self.cx.keep == Keep::All {
+            for image in (0..self.root.images.len()).filter(|image| !taken.contains_key(image)) {
+                self.add(image, scene, &mut memory)?;
+            }
         }
         Ok(())
     }

@@ -23,7 +23,7 @@ mod uri;
 use std::ops::Range;
 
 use super::{Loader, Siblings, mesh_bytes};
-use crate::scene::{FirstView, Instance, LoadCx, Reason, Scene};
+use crate::scene::{FirstView, Instance, Keep, LoadCx, Reason, Scene};
 use buffers::Buffers;
 use glam::Vec3;
 use gltf::json::Root;
@@ -65,7 +65,7 @@ impl Loader for Gltf {
     }
 }
 
-/// Reads the meshes that are placed anywhere. Returns which meshes of the scene each glTF mesh
+/// Reads the meshes that are placed anywhere, unless all are to be kept. Returns which meshes of the scene each glTF mesh
 /// became: one for each primitive that has triangles.
 fn meshes(
     root: &Root,
@@ -74,7 +74,7 @@ fn meshes(
     scene: &mut Scene,
     cx: &LoadCx,
 ) -> Result<Vec<Range<usize>>, Reason> {
-    let mut placed = vec![false; root.meshes.len()];
+    let mut placed = vec![cx.keep == Keep::All; root.meshes.len()];
     for (mesh, _) in placements {
         placed[*mesh] = true;
     }

@@ -15,7 +15,7 @@ use crate::geometry::num;
 use crate::scene::load::fill;
 use crate::scene::load::pace::Pace;
 use crate::scene::load::text::clipped;
-use crate::scene::{LoadCx, Mesh, Reason};
+use crate::scene::{Keep, LoadCx, Mesh, Reason};
 use crate::task::Charge;
 
 /// Bytes of a vertex with every attribute.
@@ -99,7 +99,8 @@ impl<'a, 'b> Primitives<'a, 'b> {
             mesh.normals = self.read(&normals, picked, |a, i| Vec3::from_array(a.vector(i, [0.0; 3])))?;
         }
         // Where no image is looked up, nothing needs them.
-        let uv_set = mesh.material.and_then(|m| textures::uv_set(self.root, m)).map(Semantic::TexCoords);
+        let uv_set = mesh.material.and_then(|m| textures::uv_set(self.root, m));
+        let uv_set = uv_set.or((self.cx.keep == Keep::All).then_some(0)).map(Semantic::TexCoords);
         let uvs = uv_set.map_or(Ok(None), |set| self.optional(primitive, set, count, place))?;
         if let Some(uvs) = uvs {
             mesh.uvs = self.read(&uvs, picked, |a, i| Vec2::from_array(a.vector(i, [0.0; 2])))?;

@@ -1,5 +1,6 @@
 use super::*;
-use crate::scene::texture::{Channel, ImageSource, Wrap, drop_idle_uvs};
+use crate::scene::needs::drop_idle;
+use crate::scene::texture::{Channel, ImageSource, Wrap};
 use crate::scene::{Alpha, Material};
 
 /// A triangle of each of these materials.
@@ -8,7 +9,7 @@ fn scene(library: &str, mtl: &str) -> Scene {
     let faces: String = names.map(|name| format!("usemtl {name}\nf 1/1 2/2 3/3\n")).collect();
     let text = format!("mtllib {library}\n{SQUARE}vt 0 0\nvt 1 0\nvt 1 1\n{faces}");
     let mut scene = Obj.load(text.as_bytes(), &Beside(&[(library, mtl.as_bytes())]), &LoadCx::unattended()).expect("a model");
-    drop_idle_uvs(&mut scene);
+    drop_idle(&mut scene);
     check(&scene);
     scene
 }

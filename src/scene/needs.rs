@@ -1,0 +1,454 @@
+//! What a scene uses of all that a scene can have, worked out once from what its placed meshes really hold. Whatever
+//! comes after (what is kept in memory, which shading is run, whether hits are tested for holes, whether there is an
+//! upper level) is chosen by it, outside the loops; [`Keep::All`] is the opposite, which the savings are measured against.
+
+use glam::{Affine3A, Vec2, Vec3};
+
+use super::coverage::Surface;
+use super::texture::{Image, TextureUse, Textures};
+use super::{Material, Mesh, Scene};
+
+/// Something that a scene may use or leave out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Feature {
+    /// Shading normals of vertices.
+    Normals,
+    /// Colours of vertices.
+    VertexColors,
+    /// Texture coordinates.
+    Uvs,
+    /// Images that surfaces take their colour from.
+    ColorMaps,
+    /// Images that surfaces take their opacity from.
+    AlphaMaps,
+    /// Hits that are asked whether the surface is there at all.
+    AlphaTest,
+    /// Surfaces that shine.
+    Emission,
+    /// Surfaces that let light through.
+    Transmission,
+    /// Whether the back of a surface is seen.
+    DoubleSided,
+    /// A level above structures of single meshes.
+    Instancing,
+    /// Normals that are turned with their instance.
+    Transforms,
+    /// The numbers of vertices and triangles.
+    Indices,
+    /// Positions and indices beside those that structures are built over.
+    Corners,
+    /// Meshes that stand nowhere.
+    UnplacedMeshes,
+    /// Images and channels that no surface reads.
+    UnusedImages,
+}
+
+/// How much of a model is kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Keep {
+    /// What the scene needs.
+    #[default]
+    Needed,
+    /// Everything in the file: what is left out is measured against it.
+    All,
+}
+
+impl Feature {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 15] = [
+        Self::Normals,
+        Self::VertexColors,
+        Self::Uvs,
+        Self::ColorMaps,
+        Self::AlphaMaps,
+        Self::AlphaTest,
+        Self::Emission,
+        Self::Transmission,
+        Self::DoubleSided,
+        Self::Instancing,
+        Self::Transforms,
+        Self::Indices,
+        Self::Corners,
+        Self::UnplacedMeshes,
+        Self::UnusedImages,
+    ];
+
+    /// The name in files.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Normals => "normals",
+            Self::VertexColors => "vertex-colors",
+            Self::Uvs => "uvs",
+            Self::ColorMaps => "color-maps",
+            Self::AlphaMaps => "alpha-maps",
+            Self::AlphaTest => "alpha-test",
+            Self::Emission => "emission",
+            Self::Transmission => "transmission",
+            Self::DoubleSided => "double-sided",
+            Self::Instancing => "instancing",
+            Self::Transforms => "transforms",
+            Self::Indices => "indices",
+            Self::Corners => "second-corners",
+            Self::UnplacedMeshes => "unplaced-meshes",
+            Self::UnusedImages => "unused-images",
+        }
+    }
+
+    /// The name in the window.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Normals => "Normals",
+            Self::VertexColors => "Vertex colours",
+            Self::Uvs => "Texture coordinates",
+            Self::ColorMaps => "Colour images",
+            Self::AlphaMaps => "Opacity images",
+            Self::AlphaTest => "Test for holes",
+            Self::Emission => "Emission",
+            Self::Transmission => "Transmission",
+            Self::DoubleSided => "Two-sidedness",
+            Self::Instancing => "Upper level",
+            Self::Transforms => "Turned normals",
+            Self::Indices => "Wide indices",
+            Self::Corners => "Second corners",
+            Self::UnplacedMeshes => "Unplaced meshes",
+            Self::UnusedImages => "Unused images",
+        }
+    }
+
+    const fn bit(self) -> u32 {
+        1 << self as u32
+    }
+}
+
+/// A set of features.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs(u32);
+
+impl Needs {
+    /// Everything: right for any scene.
+    pub const ALL: Self = Self(u32::MAX);
+
+    /// Whether a feature is among them.
+    pub const fn has(self, feature: Feature) -> bool {
+        self.0 & feature.bit() != 0
+    }
+
+    /// The same with one more.
+    #[must_use]
+    pub const fn with(self, feature: Feature) -> Self {
+        Self(self.0 | feature.bit())
+    }
+
+    /// What the placed meshes of a scene use, as far as `textures` are there. One that is not counts as having holes
+    /// where its material may have some.
+    pub fn of(scene: &Scene, textures: &Textures) -> Self {
+        let mut needs = Self::default();
+        let places = places(scene);
+        for (number, mesh) in scene.meshes.iter().enumerate().filter(|(number, _)| places[*number] > 0) {
+            let surface = Surface::new(scene, number, textures);
+            let (material, mapped) = (material_of(scene, mesh), !mesh.uvs.is_empty());
+            let colored_by = material.base_color_texture.filter(|_| mapped);
+            let alpha_by = material.alpha_texture.filter(|_| mapped && material.alpha != super::Alpha::Opaque);
+            let waits = alpha_by.is_some_and(|alpha| textures.get(alpha.texture.image).is_none());
+            let used = [
+                (Feature::Normals, !mesh.normals.is_empty()),
+                (Feature::VertexColors, !mesh.colors.is_empty()),
+                (Feature::Uvs, mapped),
+                (Feature::ColorMaps, colored_by.is_some()),
+                (Feature::AlphaMaps, alpha_by.is_some()),
+                (Feature::AlphaTest, surface.needs_test() || waits),
+                (Feature::Instancing, places[number] > 1),
+                (Feature::Corners, false),
+            ];
+            for (feature, _) in used.into_iter().filter(|(_, used)| *used) {
+                needs = needs.with(feature);
+            }
+        }
+        let turned = |i: &super::Instance| i.world_from_object != Affine3A::IDENTITY && !scene.meshes[i.mesh].normals.is_empty();
+        if scene.instances.iter().any(turned) {
+            needs = needs.with(Feature::Transforms);
+        }
+        needs.with(Feature::Indices)
+    }
+}
+
+/// How often each mesh stands somewhere.
+fn places(scene: &Scene) -> Vec<u32> {
+    let mut places = vec![0; scene.meshes.len()];
+    scene.instances.iter().for_each(|i| places[i.mesh] += 1);
+    places
+}
+
+fn material_of<'a>(scene: &'a Scene, mesh: &Mesh) -> &'a Material {
+    static PLAIN: Material = Material::PLAIN;
+    mesh.material.and_then(|m| scene.materials.get(m)).unwrap_or(&PLAIN)
+}
+
+/// Frees what no picture looks at: texture coordinates of meshes whose material reads no image, and colours of vertices
+/// that are all white.
+pub(super) fn drop_idle(scene: &mut Scene) {
+    let Scene { meshes, materials, .. } = scene;
+    for mesh in meshes {
+        if !mesh.material.and_then(|m| materials.get(m)).is_some_and(Material::is_textured) {
+            mesh.uvs = Vec::new();
+        }
+        if mesh.colors.iter().all(|color| *color == WHITE) {
+            mesh.colors = Vec::new();
+        }
+    }
+}
+
+const WHITE: [f32; 4] = [1.0; 4];
+
+/// Bytes of a scene, by what they are for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneBytes {
+    /// Of positions and indices.
+    pub corners: u64,
+    /// Of normals.
+    pub normals: u64,
+    /// Of colours of vertices.
+    pub colors: u64,
+    /// Of texture coordinates.
+    pub uvs: u64,
+    /// Of meshes that stand nowhere.
+    pub unplaced: u64,
+    /// Of materials, instances, and images as they are stored.
+    pub rest: u64,
+}
+
+impl SceneBytes {
+    /// All together.
+    pub const fn total(&self) -> u64 {
+        self.corners + self.normals + self.colors + self.uvs + self.unplaced + self.rest
+    }
+}
+
+impl Scene {
+    /// The bytes that it takes in memory now.
+    pub fn bytes(&self) -> SceneBytes {
+        let mut bytes = SceneBytes::default();
+        for (mesh, places) in self.meshes.iter().zip(places(self)) {
+            let (normals, colors) = (size_of_val(&mesh.normals[..]) as u64, size_of_val(&mesh.colors[..]) as u64);
+            let uvs = size_of_val(&mesh.uvs[..]) as u64;
+            let corners = (size_of_val(&mesh.positions[..]) + size_of_val(&mesh.triangles[..])) as u64;
+            if places == 0 {
+                bytes.unplaced += normals + colors + uvs + corners;
+            } else {
+                bytes.normals += normals;
+                bytes.colors += colors;
+                bytes.uvs += uvs;
+                bytes.corners += corners;
+            }
+        }
+        let lists = size_of_val(&self.meshes[..]) + size_of_val(&self.instances[..]) + size_of_val(&self.materials[..]);
+        bytes.rest = lists as u64 + self.images.iter().map(Image::bytes).sum::<u64>();
+        bytes
+    }
+
+    /// Gives up positions, and indices where nothing else of a vertex is looked up by them: once there is a
+    /// [`super::Geometry`] it holds them. The scene cannot be flattened again after that.
+    pub fn give_up_corners(&mut self) {
+        for mesh in &mut self.meshes {
+            mesh.positions = Vec::new();
+            if mesh.normals.is_empty() && mesh.colors.is_empty() && mesh.uvs.is_empty() {
+                mesh.triangles = Vec::new();
+            }
+        }
+    }
+
+    /// Gives every mesh and material everything that there is, with values that change nothing in a picture: normals of
+    /// no length, white colours, texture coordinates of 0, a white image of one texel. What a program with one kind of
+    /// vertex and one kind of material would hold.
+    pub fn fill_in(&mut self) {
+        let white = self.images.len();
+        self.images.push(Image::white());
+        for mesh in &mut self.meshes {
+            let n = mesh.positions.len();
+            mesh.normals.resize(n, Vec3::ZERO);
+            mesh.colors.resize(n, WHITE);
+            // Without coordinates an image does not show, and with some it would.
+            if !mesh.material.and_then(|m| self.materials.get(m)).is_some_and(Material::is_textured) {
+                mesh.uvs.resize(n, Vec2::ZERO);
+            }
+            if mesh.material.is_none() {
+                mesh.material = Some(self.materials.len());
+            }
+        }
+        self.materials.push(Material::PLAIN);
+        for material in &mut self.materials {
+            material.base_color_texture.get_or_insert(TextureUse { image: white, ..TextureUse::default() });
+        }
+    }
+}
+
+/// A feature of a scene, and why it is used or left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// Which one.
+    pub feature: Feature,
+    /// Whether the scene uses it.
+    pub used: bool,
+    /// A sentence.
+    pub why: String,
+}
+
+impl Needs {
+    /// Every feature, and why it is used or left out.
+    pub fn findings(self, scene: &Scene) -> Vec<Finding> {
+        let facts = Facts::of(scene);
+        let finding = |feature: Feature| Finding { feature, used: self.has(feature), why: facts.why(feature, self.has(feature)) };
+        Feature::ALL.into_iter().map(finding).collect()
+    }
+}
+
+/// What sentences about a scene need.
+struct Facts {
+    placed: usize,
+    normals: usize,
+    colors: usize,
+    mapped: usize,
+    maybe_holes: usize,
+    instances: usize,
+    repeated: (usize, u64),
+    turned: usize,
+    images: usize,
+}
+
+impl Facts {
+    fn of(scene: &Scene) -> Self {
+        let places = places(scene);
+        let placed = || scene.meshes.iter().zip(&places).filter(|(_, places)| **places > 0).map(|(mesh, _)| mesh);
+        let count = |is: fn(&Mesh) -> bool| placed().filter(|mesh| is(mesh)).count();
+        let many = || places.iter().filter(|places| **places > 1);
+        Self {
+            placed: placed().count(),
+            normals: count(|mesh| !mesh.normals.is_empty()),
+            colors: count(|mesh| !mesh.colors.is_empty()),
+            mapped: count(|mesh| !mesh.uvs.is_empty()),
+            maybe_holes: placed().filter(|mesh| material_of(scene, mesh).alpha != super::Alpha::Opaque).count(),
+            instances: scene.instances.len(),
+            repeated: (many().count(), many().map(|places| u64::from(*places)).sum()),
+            turned: scene.instances.iter().filter(|i| i.world_from_object != Affine3A::IDENTITY).count(),
+            images: scene.images.len(),
+        }
+    }
+
+    fn why(&self, feature: Feature, used: bool) -> String {
+        let (placed, instances) = (self.placed, self.instances);
+        let of_meshes = |n: usize, what: &str| format!("{n} of {placed} meshes {what}.");
+        match (feature, used) {
+            (Feature::Normals, true) => of_meshes(self.normals, "have normals, which shading smooths their triangles by"),
+            (Feature::Normals, false) => "No mesh has normals: triangles are shaded flat.".into(),
+            (Feature::VertexColors, true) => of_meshes(self.colors, "have colours at their vertices"),
+            (Feature::VertexColors, false) => "No mesh has colours at its vertices, or all are white.".into(),
+            (Feature::Uvs, true) => of_meshes(self.mapped, "have texture coordinates that an image is looked up by"),
+            (Feature::Uvs, false) => "No material reads an image, so texture coordinates are not kept.".into(),
+            (Feature::ColorMaps, true) => format!("{} images give surfaces their colour or opacity.", self.images),
+            (Feature::ColorMaps, false) => "No surface takes its colour from an image.".into(),
+            (Feature::AlphaMaps, true) => of_meshes(self.maybe_holes, "have a material with an opacity, some of it from images"),
+            (Feature::AlphaMaps, false) => "No surface takes its opacity from an image.".into(),
+            (Feature::AlphaTest, true) => of_meshes(self.maybe_holes, "may have holes, so each hit is asked whether it counts"),
+            (Feature::AlphaTest, false) if self.maybe_holes > 0 => {
+                of_meshes(self.maybe_holes, "could have holes, and none has: their opacity is 1 everywhere")
+            }
+            (Feature::AlphaTest, false) => "All surfaces are solid: every hit counts.".into(),
+            (Feature::Emission, _) => "No mode shows light that surfaces send out, so it is not read.".into(),
+            (Feature::Transmission, _) => "No mode shows light that passes surfaces, so it is not read.".into(),
+            (Feature::DoubleSided, _) => "Rays hit both sides of every triangle, and both are shaded alike.".into(),
+            (Feature::Instancing, true) => {
+                let (meshes, times) = self.repeated;
+                format!("{meshes} meshes stand in {times} places: each is kept once, below an upper level.")
+            }
+            (Feature::Instancing, false) => "No mesh stands in two places: there is one level.".into(),
+            (Feature::Transforms, true) => {
+                format!("{} of {instances} instances are moved or turned, and have normals.", self.turned)
+            }
+            (Feature::Transforms, false) if self.turned > 0 => "What is moved or turned has no normals.".into(),
+            (Feature::Transforms, false) => "Everything stands as it was made: normals are right as they are.".into(),
+            (Feature::Indices, _) => "32 bits number all vertices and triangles; what needs more is refused.".into(),
+            (Feature::Corners, _) => "Structures share one copy of positions and indices; the model's own is given up.".into(),
+            (Feature::UnplacedMeshes, _) => "Meshes that stand nowhere are not read.".into(),
+            (Feature::UnusedImages, _) => "Images and channels that no surface reads are not decoded.".into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Alpha, Instance};
+
+    fn scene() -> Scene {
+        let mesh = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]], ..Mesh::default() };
+        Scene { meshes: vec![mesh.clone(), mesh], instances: vec![Instance::identity(0)], ..Scene::default() }
+    }
+
+    fn needs(scene: &Scene) -> Needs {
+        Needs::of(scene, &Textures::none())
+    }
+
+    #[test]
+    fn a_plain_scene_needs_nothing_but_indices() {
+        assert_eq!(needs(&scene()), Needs::default().with(Feature::Indices));
+    }
+
+    #[test]
+    fn what_only_an_unplaced_mesh_has_is_not_needed() {
+        let mut scene = scene();
+        scene.meshes[1].normals = vec![Vec3::Z; 3];
+        assert!(!needs(&scene).has(Feature::Normals));
+        scene.instances.push(Instance::identity(1));
+        assert!(needs(&scene).has(Feature::Normals) && !needs(&scene).has(Feature::Transforms));
+        scene.instances[1].world_from_object = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+        assert!(needs(&scene).has(Feature::Transforms) && !needs(&scene).has(Feature::Instancing));
+        scene.instances.push(Instance::identity(1));
+        assert!(needs(&scene).has(Feature::Instancing));
+    }
+
+    #[test]
+    fn holes_are_needed_only_where_opacity_is_short_of_what_is_asked() {
+        let mut scene = scene();
+        let color = |alpha: f32| Material { base_color: [1.0, 1.0, 1.0, alpha], alpha: Alpha::Blend, ..Material::PLAIN };
+        scene.meshes[0].material = Some(0);
+        scene.materials = vec![color(1.0)];
+        assert!(!needs(&scene).has(Feature::AlphaTest));
+        scene.materials = vec![color(0.5)];
+        assert!(needs(&scene).has(Feature::AlphaTest));
+    }
+
+    #[test]
+    fn white_colours_and_coordinates_that_nothing_reads_are_dropped() {
+        let mut scene = scene();
+        scene.meshes[0].colors = vec![WHITE; 3];
+        scene.meshes[0].uvs = vec![Vec2::ZERO; 3];
+        scene.meshes[1].colors = vec![WHITE, WHITE, [1.0, 1.0, 1.0, 0.5]];
+        drop_idle(&mut scene);
+        assert!(scene.meshes[0].colors.is_empty() && scene.meshes[0].uvs.is_empty() && scene.meshes[1].colors.len() == 3);
+    }
+
+    #[test]
+    fn every_feature_has_a_sentence_and_a_name_of_its_own() {
+        for set in [Needs::default(), Needs::ALL] {
+            let findings = set.findings(&scene());
+            assert_eq!(findings.len(), Feature::ALL.len());
+            assert!(findings.iter().all(|finding| finding.why.ends_with('.') && finding.used == set.has(finding.feature)));
+        }
+        for (i, feature) in Feature::ALL.into_iter().enumerate() {
+            assert!(Feature::ALL[..i].iter().all(|other| other.id() != feature.id() && other.name() != feature.name()));
+        }
+    }
+
+    #[test]
+    fn bytes_are_those_of_the_lists() {
+        let mut scene = scene();
+        let before = scene.bytes();
+        assert_eq!((before.corners, before.unplaced, before.normals), (48, 48, 0));
+        scene.fill_in();
+        let filled = scene.bytes();
+        assert_eq!((filled.normals, filled.colors, filled.uvs, filled.unplaced), (36, 48, 24, 48 + 36 + 48 + 24));
+        assert!(filled.total() > before.total());
+        scene.give_up_corners();
+        assert_eq!(scene.bytes().corners, 12, "the indices of what vertices have");
+    }
+}
