@@ -53,16 +53,16 @@ fn timed<T>(secs: &mut Vec<f64>, work: impl FnOnce() -> T) -> T {
 
 fn row(path: &PathBuf, format: &str, triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
     let name = path.to_str().ok_or("a path that is no text")?;
+    let cx = LoadCx::unattended();
     let (mut read, mut load, mut peer) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..ROUNDS {
         let bytes = timed(&mut read, || fs::read(path))?;
         drop(bytes);
-        let scene = timed(&mut load, || scene::open(name, &LoadCx::unattended()))?;
+        let scene = timed(&mut load, || scene::open(name, &cx))?;
         assert_eq!(scene.triangle_count(), triangles as u64);
-        drop(scene);
         if format == "obj" {
             let triangles = timed(&mut peer, || plain_tobj(path))?;
-            assert_eq!(triangles, scene::open(name, &LoadCx::unattended())?.triangle_count());
+            assert_eq!(triangles, scene.triangle_count());
         }
     }
     let told = |secs: &[f64]| if secs.is_empty() { "-".into() } else { format!("{:.3} ±{:.3}", median(secs), half_iqr(secs)) };

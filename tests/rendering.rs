@@ -54,7 +54,7 @@ fn only_pixels_that_cannot_see_the_scene_are_not_traced() {
         let mut job = job(&triangles, "bvh", Mode::Depth);
         for (i, direction) in around.into_iter().enumerate() {
             for projection in projections {
-                for distance in [0.5, 3.0, 20.0, 1e5] {
+                for distance in [0.5f32, 3.0, 20.0, 1e5] {
                     // Beside the middle, so that the scene is cut by an edge of the picture or out of it.
                     let target = Vec3::new(0.4, -0.3, 0.2) * i as f32 * distance.min(4.0);
                     job.camera = Camera { eye: target + direction * distance, target, up: Vec3::Y, projection };

@@ -2,7 +2,7 @@
 
 use crate::geometry::num;
 use crate::geometry::tri::TestKind;
-use crate::task::{Budget, Cancel, Cancelled, OverBudget, Pool, Progress};
+use crate::task::{Budget, Cancel, Cancelled, OverBudget, Pool, Progress, mib};
 
 /// What every build takes besides the geometry and the parameters.
 #[derive(Clone, Debug)]
@@ -36,6 +36,30 @@ impl BuildCx {
     }
 }
 
+/// What would fit into the memory that is left.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Fits(pub Vec<Fit>);
+
+/// A structure that would fit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fit {
+    /// Its id, with the parameter that makes it fit.
+    pub structure: String,
+    /// Bytes that building it takes, about.
+    pub bytes: u64,
+}
+
+impl std::fmt::Display for Fits {
+    /// A sentence, after a blank; nothing if nothing was found.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (i, Fit { structure, bytes }) in self.0.iter().enumerate() {
+            let before = if i == 0 { " Would fit: " } else { ", " };
+            write!(f, "{before}{structure} (about {})", mib(*bytes))?;
+        }
+        if self.0.is_empty() { Ok(()) } else { f.write_str(".") }
+    }
+}
+
 /// Why there is no structure.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
@@ -43,14 +67,16 @@ pub enum BuildError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// It would not fit.
-    #[error("the {structure} is too large: {over}. {remedy}")]
+    #[error("the {structure} is too large: {over}. {remedy}{fits}")]
     Memory {
         /// The structure's id.
         structure: &'static str,
         /// The figures.
         over: OverBudget,
-        /// What would fit.
+        /// What can be done.
         remedy: &'static str,
+        /// What would fit, once that was looked for.
+        fits: Fits,
     },
     /// It would need indices of more than its nodes hold.
     #[error("the {structure} would need more than {limit} {what}. {remedy}")]

@@ -25,8 +25,9 @@ pub mod stats;
 pub mod validate;
 pub mod volumes;
 mod wide;
+mod would_fit;
 
-pub use build::{BuildCx, BuildError};
+pub use build::{BuildCx, BuildError, Fit, Fits};
 pub use cell::{Cell, CellId, CellKind, Cells, Level, MemoryPart, Shape, Split};
 pub use hit::{Accepts, AnyHit, Asked, Closest, Filter, Filtered, Hit, Mode, PrimHit, Query};
 pub use instanced::Instanced;

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::params::{Param, ParamValues};
-use super::{Accel, BuildCx, BuildError, Instanced, brute, bsp, bvh, grid, kdtree, octree, volumes, wide};
+use super::{Accel, BuildCx, BuildError, Instanced, brute, bsp, bvh, grid, kdtree, octree, volumes, wide, would_fit};
 use crate::geometry::tri::{BaldwinWeber, Double, Exact, Fast, TestKind, TriTest, Watertight};
 use crate::scene::Geometry;
 
@@ -82,15 +82,22 @@ impl Entry {
         p: &ParamValues,
         cx: &BuildCx,
     ) -> Result<Box<dyn Accel>, BuildError> {
-        match test {
-            TestKind::Watertight => (self.watertight)(geometry, p, cx),
-            TestKind::Fast => (self.fast)(geometry, p, cx),
-            TestKind::Exact => (self.exact)(geometry, p, cx),
+        let build = match test {
+            TestKind::Watertight => self.watertight,
+            TestKind::Fast => self.fast,
+            TestKind::Exact => self.exact,
             other => match self.others.iter().find(|(test, _)| *test == other) {
-                Some((_, build)) => build(geometry, p, cx),
-                None => Err(BuildError::NoSuchTest { structure: self.id, test }),
+                Some((_, build)) => *build,
+                None => return Err(BuildError::NoSuchTest { structure: self.id, test }),
             },
-        }
+        };
+        build(geometry, p, cx).or_else(|error| match error {
+            BuildError::Memory { structure, over, remedy, .. } => {
+                let fits = would_fit::look(self.id, geometry, cx)?;
+                Err(BuildError::Memory { structure, over, remedy, fits })
+            }
+            other => Err(other),
+        })
     }
 
     /// The default parameters.

@@ -336,21 +336,27 @@ impl Facts {
 
     fn why(&self, feature: Feature, used: bool) -> String {
         let (placed, instances) = (self.placed, self.instances);
-        let of_meshes = |n: usize, what: &str| format!("{n} of {placed} meshes {what}.");
+        let of_meshes = |n: usize, what: &str| format!("{what}: {n} of {placed} meshes.");
         match (feature, used) {
-            (Feature::Normals, true) => of_meshes(self.normals, "have normals, which shading smooths their triangles by"),
+            (Feature::Normals, true) => of_meshes(self.normals, "Shading smooths triangles by the normals of their vertices"),
             (Feature::Normals, false) => "No mesh has normals: triangles are shaded flat.".into(),
-            (Feature::VertexColors, true) => of_meshes(self.colors, "have colours at their vertices"),
+            (Feature::VertexColors, true) => of_meshes(self.colors, "There are colours at vertices"),
             (Feature::VertexColors, false) => "No mesh has colours at its vertices, or all are white.".into(),
-            (Feature::Uvs, true) => of_meshes(self.mapped, "have texture coordinates that an image is looked up by"),
+            (Feature::Uvs, true) => of_meshes(self.mapped, "Images are looked up by texture coordinates"),
             (Feature::Uvs, false) => "No material reads an image, so texture coordinates are not kept.".into(),
-            (Feature::ColorMaps, true) => format!("{} images give surfaces their colour or opacity.", self.images),
+            (Feature::ColorMaps, true) => {
+                format!("Surfaces take their colour from images; colour and opacity together need {}.", self.images)
+            }
             (Feature::ColorMaps, false) => "No surface takes its colour from an image.".into(),
-            (Feature::AlphaMaps, true) => of_meshes(self.maybe_holes, "have a material with an opacity, some of it from images"),
+            (Feature::AlphaMaps, true) => {
+                of_meshes(self.maybe_holes, "Surfaces take their opacity from images, among those that may have holes")
+            }
             (Feature::AlphaMaps, false) => "No surface takes its opacity from an image.".into(),
-            (Feature::AlphaTest, true) => of_meshes(self.maybe_holes, "may have holes, so each hit is asked whether it counts"),
+            (Feature::AlphaTest, true) => {
+                of_meshes(self.maybe_holes, "Some may have holes, so that each hit is asked whether it counts")
+            }
             (Feature::AlphaTest, false) if self.maybe_holes > 0 => {
-                of_meshes(self.maybe_holes, "could have holes, and none has: their opacity is 1 everywhere")
+                of_meshes(self.maybe_holes, "Some could have holes, but their opacity is 1 everywhere")
             }
             (Feature::AlphaTest, false) => "All surfaces are solid: every hit counts.".into(),
             (Feature::Emission, _) => "No mode shows light that surfaces send out, so it is not read.".into(),
@@ -358,11 +364,11 @@ impl Facts {
             (Feature::DoubleSided, _) => "Rays hit both sides of every triangle, and both are shaded alike.".into(),
             (Feature::Instancing, true) => {
                 let (meshes, times) = self.repeated;
-                format!("{meshes} meshes stand in {times} places: each is kept once, below an upper level.")
+                format!("Meshes that stand in several places are kept once, below an upper level: {meshes}, in {times} places.")
             }
             (Feature::Instancing, false) => "No mesh stands in two places: there is one level.".into(),
             (Feature::Transforms, true) => {
-                format!("{} of {instances} instances are moved or turned, and have normals.", self.turned)
+                format!("Normals are turned with what is moved or turned: {} of {instances} instances.", self.turned)
             }
             (Feature::Transforms, false) if self.turned > 0 => "What is moved or turned has no normals.".into(),
             (Feature::Transforms, false) => "Everything stands as it was made: normals are right as they are.".into(),

@@ -26,7 +26,8 @@ pub struct OverBudget {
     pub limit: u64,
 }
 
-fn mib(bytes: u64) -> String {
+/// How amounts of memory are written in errors.
+pub fn mib(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / (1024.0 * 1024.0))
 }
 

@@ -7,7 +7,7 @@ mod pool;
 mod progress;
 pub mod sort;
 
-pub use budget::{Budget, Charge, OverBudget};
+pub use budget::{Budget, Charge, OverBudget, mib};
 pub use cancel::{Cancel, Cancelled};
 pub use pool::Pool;
 pub use progress::{Phase, Progress, Snapshot};

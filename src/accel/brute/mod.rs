@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::best::Best;
 use super::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape};
 use super::probe::Probe;
-use super::{BuildCx, BuildError, PrimHit, Query, Structure};
+use super::{BuildCx, BuildError, Fits, PrimHit, Query, Structure};
 use crate::geometry::Ray;
 use crate::geometry::num;
 use crate::geometry::tri::{self, Block, Eight, TriTest};
@@ -28,7 +28,7 @@ pub struct Brute<T, const BOUND: bool> {
 
 /// Blocks tested between two looks at the cancel flag: well under a millisecond.
 const BLOCKS_PER_CHECK: usize = 1 << 13;
-/// Blocks packed between two.
+/// Blocks packed between two words of how far it is.
 const CHUNK: usize = 1 << 11;
 
 impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
@@ -38,17 +38,22 @@ impl<T: TriTest, const BOUND: bool> Brute<T, BOUND> {
         let n = geometry.live_count();
         let count = n.div_ceil(LANES);
         let structure = if BOUND { "bound" } else { "brute" };
-        let too_large = |over| BuildError::Memory { structure, over, remedy: "Raise the memory budget, or use grid." };
+        let too_large =
+            |over| BuildError::Memory { structure, over, remedy: "Raise the memory budget, or use grid.", fits: Fits::default() };
         let charge = cx.budget.charge((count * size_of::<Block>()) as u64).map_err(too_large)?;
         cx.progress.start("pack", n as u64);
         let corners = |b: usize| (b * LANES..n.min((b + 1) * LANES)).map(|i| geometry.corners(geometry.live(i)));
-        let chunk = |c: usize| {
-            cx.progress.advance((CHUNK * LANES) as u64);
-            let blocks = c * CHUNK..count.min((c + 1) * CHUNK);
-            cx.cancel.check().map(|()| blocks.map(|b| Block::new(corners(b))).collect::<Vec<_>>())
+        let pack = |b: usize| {
+            if b.is_multiple_of(CHUNK) {
+                cx.progress.advance((CHUNK * LANES) as u64);
+            }
+            // Whoever has stopped it gets no structure.
+            if cx.cancel.is_cancelled() { Block::new([]) } else { Block::new(corners(b)) }
         };
-        let chunks: Result<Vec<_>, _> = cx.pool.run(|| (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect());
-        Ok(Self { geometry: Arc::clone(geometry), blocks: chunks?.concat(), _charge: charge, test: PhantomData })
+        let mut blocks = Vec::new();
+        cx.pool.run(|| (0..count).into_par_iter().map(pack).collect_into_vec(&mut blocks));
+        cx.cancel.check()?;
+        Ok(Self { geometry: Arc::clone(geometry), blocks, _charge: charge, test: PhantomData })
     }
 
     #[inline(always)]

@@ -14,7 +14,7 @@ use super::pieces::{Piece, Pieces};
 use super::plane::{Plane, Slack};
 use super::polytope::Polytope;
 use super::tree::{BspNode, Built, Form, MAX_COUNT, MAX_DEPTH};
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::{BuildCx, BuildError, Fits};
 use crate::geometry::{Aabb, num};
 use crate::scene::{Geometry, PrimRef};
 use crate::task::{Charge, OverBudget};
@@ -91,7 +91,12 @@ fn auto_depth(n: usize) -> u32 {
 }
 
 fn too_large(over: OverBudget) -> BuildError {
-    BuildError::Memory { structure: "bsp", over, remedy: "Raise the memory budget, lower max_depth, or use bvh." }
+    BuildError::Memory {
+        structure: "bsp",
+        over,
+        remedy: "Raise the memory budget, lower max_depth, or use bvh.",
+        fits: Fits::default(),
+    }
 }
 
 fn too_many(what: &'static str, limit: usize) -> BuildError {

@@ -19,7 +19,7 @@ use super::topdown::{self, Limits};
 use super::tree::{Built, MAX_DEPTH, Node, Packed};
 use super::{morton, ploc};
 use crate::accel::params::ParamValues;
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::{BuildCx, BuildError, Fits};
 use crate::geometry::{Aabb, num};
 use crate::scene::Geometry;
 use crate::task::{Charge, OverBudget};
@@ -189,7 +189,12 @@ pub const fn bytes_over_boxes(boxes: usize) -> usize {
 }
 
 fn too_large(over: OverBudget) -> BuildError {
-    BuildError::Memory { structure: ID, over, remedy: "Raise the memory budget, or use grid, which packs no triangles." }
+    BuildError::Memory {
+        structure: ID,
+        over,
+        remedy: "Raise the memory budget, or use grid, which packs no triangles.",
+        fits: Fits::default(),
+    }
 }
 
 impl Plan {

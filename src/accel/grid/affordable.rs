@@ -6,7 +6,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::contents::Overlapped;
 use super::lattice::Lattice;
+use super::{DENSITY, LEAST_DENSITY};
 use crate::accel::BuildCx;
+use crate::geometry::num;
 use crate::scene::Geometry;
 use crate::task::Cancelled;
 
@@ -28,27 +30,47 @@ fn share(references: f64, most: f64) -> f64 {
 pub fn lattice(geometry: &Geometry, density: f64, cx: &BuildCx) -> Result<(Lattice, Option<String>), Cancelled> {
     let triangles = geometry.live_count();
     let wanted = Lattice::new(geometry.bounds(), triangles, density);
-    let (mut looked_at, mut references) = (0.0, 0.0);
-    for i in (0..triangles).step_by(triangles.div_ceil(SAMPLE).max(1)) {
-        cx.cancel.check()?;
-        looked_at += 1.0;
-        wanted.overlapped(&geometry.corners(geometry.live(i)), &cx.cancel, &mut |_| {
-            references += 1.0;
-            Ok(())
-        })?;
-    }
-    let share = share(references, MOST * looked_at);
+    let references = references(&wanted, geometry, cx)?;
+    let share = share(references, MOST);
     if share == 1.0 {
         return Ok((wanted, None));
     }
     let fewer = Lattice::new(geometry.bounds(), triangles, density * share);
-    let remark = format!(
-        "{} cells instead of {}, as a triangle would be in {:.0} of them.",
-        fewer.count(),
-        wanted.count(),
-        references / looked_at
-    );
+    let remark =
+        format!("{} cells instead of {}, as a triangle would be in {references:.0} of them.", fewer.count(), wanted.count());
     Ok((fewer, Some(remark)))
+}
+
+/// Cells that a triangle is in, about; 0 if there is no triangle.
+fn references(lattice: &Lattice, geometry: &Geometry, cx: &BuildCx) -> Result<f64, Cancelled> {
+    let triangles = geometry.live_count();
+    let (mut looked_at, mut references) = (0.0, 0.0);
+    for i in (0..triangles).step_by(triangles.div_ceil(SAMPLE).max(1)) {
+        cx.cancel.check()?;
+        looked_at += 1.0;
+        lattice.overlapped(&geometry.corners(geometry.live(i)), &cx.cancel, &mut |_| {
+            references += 1.0;
+            Ok(())
+        })?;
+    }
+    Ok(references / f64::max(looked_at, 1.0))
+}
+
+/// The greatest density, halved again and again from the usual one, whose grid is built in `bytes`, and how many it takes,
+/// about; `None` if no grid is.
+pub fn within(geometry: &Geometry, bytes: u64, cx: &BuildCx) -> Result<Option<(f64, u64)>, Cancelled> {
+    let mut tried = DENSITY;
+    while tried >= LEAST_DENSITY {
+        let (lattice, _) = lattice(geometry, tried, cx)?;
+        let references = references(&lattice, geometry, cx)? * geometry.live_count() as f64;
+        // As `Contents::sort` takes it; a tenth more references, since they are an estimate.
+        let needed = num::floor_index(8.0 * lattice.count() as f64 + 4.4 * references, usize::MAX) as u64;
+        if needed <= bytes {
+            return Ok(Some((tried, needed)));
+        }
+        tried *= 0.5;
+    }
+    Ok(None)
 }
 
 /// The density that the cells of a coarse grid can be cut with, and what is to be said of it.

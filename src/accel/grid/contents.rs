@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::accel::best::Best;
 use crate::accel::cell::MemoryPart;
 use crate::accel::probe::Probe;
-use crate::accel::{BuildCx, BuildError, Query};
+use crate::accel::{BuildCx, BuildError, Fits, Query};
 use crate::geometry::num;
 use crate::geometry::tri::TriTest;
 use crate::scene::{Geometry, PrimRef};
@@ -43,7 +43,7 @@ pub struct Refusal {
 impl Refusal {
     /// Over the memory budget.
     pub fn too_large(&self, over: OverBudget) -> BuildError {
-        BuildError::Memory { structure: self.structure, over, remedy: self.remedy }
+        BuildError::Memory { structure: self.structure, over, remedy: self.remedy, fits: Fits::default() }
     }
 
     /// That many cells or references, if they can be numbered.

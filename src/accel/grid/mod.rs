@@ -14,6 +14,8 @@ mod two_level_builder;
 mod uniform;
 mod walk;
 
+pub use affordable::within;
+
 use std::sync::Arc;
 
 use super::params::{Kind, Param, ParamValues};
@@ -21,13 +23,18 @@ use super::{Accel, BuildCx, BuildError};
 use crate::geometry::tri::TriTest;
 use crate::scene::Geometry;
 
+/// Cells for each triangle of a uniform grid, unless set otherwise.
+pub const DENSITY: f64 = 2.0;
+/// The fewest.
+pub const LEAST_DENSITY: f64 = 0.01;
+
 /// What can be set of a uniform grid.
 pub const PARAMS: &[Param] = &[Param {
     id: "density",
     label: "Density λ",
     help: "Cells for each triangle: more cells mean fewer tests in each, and more steps and memory.",
     unit: "cells/triangle",
-    kind: Kind::Float { min: 0.01, max: 64.0, default: 2.0 },
+    kind: Kind::Float { min: LEAST_DENSITY, max: 64.0, default: DENSITY },
 }];
 
 /// What can be set of a two-level grid.

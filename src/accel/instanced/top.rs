@@ -1,7 +1,7 @@
 //! The upper level: a BVH over the boxes of places.
 
 use crate::accel::bvh::{self, Node};
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::{BuildCx, BuildError, Fits};
 use crate::geometry::{Aabb, num};
 use crate::scene::{Geometry, Placed};
 use crate::task::Charge;
@@ -21,7 +21,12 @@ impl Top {
     pub fn build(geometry: &Geometry, placed: &Placed, rest: bool, all: bool, cx: &BuildCx) -> Result<Self, BuildError> {
         let count = placed.places().len() + usize::from(rest);
         let bytes = if all { count * 4 } else { bvh::bytes_over_boxes(count) };
-        let too_large = |over| BuildError::Memory { structure: "upper level", over, remedy: "Raise the memory budget." };
+        let too_large = |over| BuildError::Memory {
+            structure: "upper level",
+            over,
+            remedy: "Raise the memory budget.",
+            fits: Fits::default(),
+        };
         let memory = cx.budget.charge(bytes as u64).map_err(too_large)?;
         cx.progress.start("top level", count as u64);
         if all {

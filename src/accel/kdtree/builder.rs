@@ -22,7 +22,7 @@ use super::large::Part;
 use super::serial::Bench;
 use super::tree::{Built, KdNode, MAX_COUNT, MAX_DEPTH};
 use super::{bins, sweep};
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::{BuildCx, BuildError, Fits};
 use crate::geometry::{Aabb, num};
 use crate::scene::{Geometry, PrimRef};
 use crate::task::{Charge, OverBudget};
@@ -107,7 +107,12 @@ fn auto_depth(n: usize) -> u32 {
 
 /// What to say of a build over its memory.
 pub fn too_large(over: OverBudget) -> BuildError {
-    BuildError::Memory { structure: "kdtree", over, remedy: "Raise the memory budget, lower max_depth, or use bvh." }
+    BuildError::Memory {
+        structure: "kdtree",
+        over,
+        remedy: "Raise the memory budget, lower max_depth, or use bvh.",
+        fits: Fits::default(),
+    }
 }
 
 fn too_many(what: &'static str, limit: usize) -> BuildError {

@@ -14,7 +14,7 @@ use super::division::{CHUNK, Costs, Division};
 use super::join::{List, Subtree, join};
 use super::node::{Node, divided};
 use super::tree::Built;
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::{BuildCx, BuildError, Fits};
 use crate::geometry::{Aabb, Slabs, num};
 use crate::scene::{Geometry, PrimRef};
 use crate::task::{Charge, OverBudget};
@@ -61,7 +61,12 @@ pub fn build(geometry: &Arc<Geometry>, costs: Costs, limits: Limits, cx: &BuildC
 
 /// The refusal for want of memory.
 pub fn too_large(over: OverBudget) -> BuildError {
-    BuildError::Memory { structure: "octree", over, remedy: "Raise the memory budget, lower max_refs or max_depth, or use bvh." }
+    BuildError::Memory {
+        structure: "octree",
+        over,
+        remedy: "Raise the memory budget, lower max_refs or max_depth, or use bvh.",
+        fits: Fits::default(),
+    }
 }
 
 /// A cell to be divided, and what is known of it.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::points::{Points, levels, ranges};
 use super::volume::Volume;
 use crate::accel::bvh::{Built, MAX_DEPTH};
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::{BuildCx, BuildError, Fits};
 use crate::task::{Cancelled, Charge, OverBudget};
 
 const _: () = assert!(MAX_DEPTH == 64, "the depth that bounds the work");
@@ -61,5 +61,5 @@ pub fn fit<V: Volume>(built: &Built, boxes: bool, charge: &mut Charge, cx: &Buil
 
 /// What to say when the memory budget does not suffice.
 pub fn too_large(over: OverBudget) -> BuildError {
-    BuildError::Memory { structure: "volumes", over, remedy: "Raise the memory budget, or use bvh." }
+    BuildError::Memory { structure: "volumes", over, remedy: "Raise the memory budget, or use bvh.", fits: Fits::default() }
 }

@@ -13,7 +13,7 @@ use super::tree::Tree;
 use super::unit::{self, Unit};
 use crate::accel::bvh::{self, Drafted};
 use crate::accel::params::ParamValues;
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::{BuildCx, BuildError, Fits};
 use crate::geometry::{Aabb, num};
 use crate::scene::{Geometry, PrimRef};
 use crate::simd::{LANES, Road};
@@ -87,7 +87,12 @@ pub fn build<T, B: Pack>(
 }
 
 fn too_large(over: OverBudget) -> BuildError {
-    BuildError::Memory { structure: ID, over, remedy: "Raise the memory budget, or use grid, which packs no triangles." }
+    BuildError::Memory {
+        structure: ID,
+        over,
+        remedy: "Raise the memory budget, or use grid, which packs no triangles.",
+        fits: Fits::default(),
+    }
 }
 
 /// Nodes and blocks that several threads make: each its own, put together at the end.
