@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use boxwood::accel::{BuildCx, registry};
+use boxwood::accel::{BuildCx, registry, would_fit};
 use boxwood::geometry::tri::TestKind;
 use boxwood::scene::{self, Geometry, LoadCx};
 use peak_alloc::PeakAlloc;
@@ -13,13 +13,39 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// The most that building may take beyond the geometry.
 const BYTES_PER_TRIANGLE: usize = 160;
 
+fn terrain(triangles: usize) -> Arc<Geometry> {
+    let cx = LoadCx::unattended();
+    let scene = scene::open(&format!("builtin:terrain?triangles={triangles}"), &cx).expect("made in code");
+    Arc::new(Geometry::new(&scene, &cx).expect("fits"))
+}
+
+/// One test, so that no other is counted: [`PeakAlloc`] counts the whole process.
 #[test]
+fn building_takes_no_more_than_it_says() {
+    the_wide_bvh_is_built_in_160_bytes_a_triangle();
+    what_is_said_to_fit_fits();
+}
+
+fn what_is_said_to_fit_fits() {
+    let cx = BuildCx::unattended(2);
+    for geometry in [terrain(20_000), terrain(400_000)] {
+        for (id, each) in would_fit::KNOWN {
+            let entry = registry::find(id).expect("registered");
+            MEMORY.reset_peak_usage();
+            let before = MEMORY.current_usage();
+            let built = entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &cx).expect("fits");
+            let peak = (MEMORY.peak_usage() - before) as u64;
+            drop(built);
+            let (said, triangles) = (each * geometry.live_count() as u64, geometry.live_count());
+            println!("{id}: {} bytes a triangle of {triangles}", peak / triangles as u64);
+            // Threads and tables take a little, however few the triangles.
+            assert!(peak <= said + (1 << 20), "{id}: {peak} bytes for {triangles} triangles, {said} said");
+        }
+    }
+}
+
 fn the_wide_bvh_is_built_in_160_bytes_a_triangle() {
-    let geometry = {
-        let cx = LoadCx::unattended();
-        let scene = scene::open("builtin:terrain?triangles=400000", &cx).expect("made in code");
-        Arc::new(Geometry::new(&scene, &cx).expect("fits"))
-    };
+    let geometry = terrain(400_000);
     let wide = registry::find("wide").expect("registered");
     let cx = BuildCx::unattended(2);
     for builder in ["binned", "ploc", "lbvh"] {

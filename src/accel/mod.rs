@@ -25,7 +25,7 @@ pub mod stats;
 pub mod validate;
 pub mod volumes;
 mod wide;
-mod would_fit;
+pub mod would_fit;
 
 pub use build::{BuildCx, BuildError, Fit, Fits};
 pub use cell::{Cell, CellId, CellKind, Cells, Level, MemoryPart, Shape, Split};

@@ -2,6 +2,7 @@
 //! out what was asked for; [`eframe::App::ui`] draws the panels, which only read and ask.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, RichText, ScrollArea, Ui, ViewportCommand};
 
@@ -32,6 +33,8 @@ pub struct App {
     commands: Commands,
     screenshot: Option<Screenshot>,
     pace: Pace,
+    /// Seconds that the present frame has taken on this thread, besides having it drawn.
+    own_secs: f64,
     /// Grows when the layout is reset: panels forget their sizes with their names.
     layout: u64,
 }
@@ -72,7 +75,7 @@ impl App {
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
         let layout = if options.is_scripted() { SCRIPTED } else { 0 };
-        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), layout };
+        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), own_secs: 0.0, layout };
         app.follow_settings(&cc.egui_ctx);
         Ok(app)
     }
@@ -211,7 +214,9 @@ fn error(ui: &mut Ui, state: &State, commands: &mut Commands) {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
+        let start = Instant::now();
         if !is_repeated(ctx) {
+            self.pace.own_work(std::mem::take(&mut self.own_secs));
             self.take_dropped(ctx);
             panels::menu::keys(ctx, &self.state, &mut self.commands);
         }
@@ -230,9 +235,11 @@ impl eframe::App for App {
         if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }
+        self.own_secs += (start.elapsed() - self.state.held_on()).as_secs_f64();
     }
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let start = Instant::now();
         let ui_secs = frame.info().cpu_usage.map(f64::from);
         if !is_repeated(ui.ctx()) {
             self.pace.frame(ui_secs, &self.state);
@@ -256,6 +263,7 @@ impl eframe::App for App {
         if !self.commands.is_empty() {
             ui.ctx().request_repaint();
         }
+        self.own_secs += start.elapsed().as_secs_f64();
     }
 
     /// A scripted window neither leaves its sizes to the next one nor, under names of its own, takes those of the last.

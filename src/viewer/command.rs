@@ -59,6 +59,8 @@ pub enum Command {
     Measure,
     /// Stop timing.
     CancelMeasure,
+    /// Work out what is predicted of rays in the shown structure: somebody looks at it.
+    Predict,
     /// Measure what leaving out saves for the open model.
     MeasureNeeds,
     /// Stop that.

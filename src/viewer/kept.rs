@@ -40,7 +40,7 @@ pub struct Built {
     pub phases: Vec<Phase>,
     /// Figures, once they are worked out.
     pub stats: Option<Arc<Stats>>,
-    /// What is predicted of rays, with the figures.
+    /// What is predicted of rays, once somebody looked at it.
     pub quality: Option<Arc<Quality>>,
 }
 
@@ -70,10 +70,13 @@ impl Kept {
     }
 
     /// Adds the figures of a structure.
-    pub fn add_stats(&mut self, key: &Key, stats: &Arc<Stats>, quality: &Arc<Quality>) {
-        for built in self.0.iter_mut().filter(|b| b.key == *key) {
-            (built.stats, built.quality) = (Some(Arc::clone(stats)), Some(Arc::clone(quality)));
-        }
+    pub fn add_stats(&mut self, key: &Key, stats: &Arc<Stats>) {
+        self.0.iter_mut().filter(|b| b.key == *key).for_each(|b| b.stats = Some(Arc::clone(stats)));
+    }
+
+    /// Adds what is predicted of rays in a structure.
+    pub fn add_quality(&mut self, key: &Key, quality: &Arc<Quality>) {
+        self.0.iter_mut().filter(|b| b.key == *key).for_each(|b| b.quality = Some(Arc::clone(quality)));
     }
 
     /// Drops the least recently used but for `shown`; false if there is none.

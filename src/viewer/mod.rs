@@ -12,7 +12,7 @@ mod graphics;
 pub mod history;
 mod kept;
 mod marks;
-mod model;
+pub mod model;
 pub mod navigation;
 mod options;
 mod overlay;

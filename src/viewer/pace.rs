@@ -4,6 +4,9 @@ use super::format;
 use super::state::{Answer, State};
 use crate::lab::statistics::median;
 
+/// A frame whose work takes longer is late.
+const LATE_SECS: f64 = 0.016;
+
 /// What a scripted window says of itself at the end.
 #[derive(Clone, Debug, Default)]
 pub struct Pace {
@@ -13,6 +16,10 @@ pub struct Pace {
     longest: f64,
     /// Frames drawn.
     frames: u64,
+    /// The longest time that the window's thread took for a frame besides having it drawn, in seconds.
+    own_longest: f64,
+    /// Frames for which it took longer than a sixtieth of a second.
+    own_late: u64,
     /// The first picture of all.
     first: Option<Answer>,
     /// How soon the first picture came after each change of the camera.
@@ -40,6 +47,12 @@ impl Pace {
         }
     }
 
+    /// Takes note of what a frame took besides being drawn, and without holding on for a picture.
+    pub fn own_work(&mut self, secs: f64) {
+        self.own_longest = self.own_longest.max(secs);
+        self.own_late += u64::from(secs > LATE_SECS);
+    }
+
     /// Takes note of the answer to a change of the camera.
     pub fn turned(&mut self, answer: Answer) {
         self.turns.push(answer);
@@ -57,10 +70,12 @@ impl Pace {
         let first = self.first.map(|a| format!("first picture (1/{} resolution) {} later; ", a.step, format::duration(a.secs)));
         let full = self.full.map(|secs| format!("one sample a pixel after {}; ", format::duration(secs)));
         let frames = format!(
-            "longest frame {} while loading or building, {} in all, of {}{}",
+            "longest frame {} while loading or building, {} in all, of {}; of them, besides drawing, {} at most, more than 16 ms in {}{}",
             format::duration(self.longest_busy),
             format::duration(self.longest),
             format::count(self.frames),
+            format::duration(self.own_longest),
+            format::count(self.own_late),
             crate::sys::peak_memory_bytes()
                 .map(|peak| format!("; at most {} of memory", format::bytes(peak)))
                 .unwrap_or_default()

@@ -23,7 +23,7 @@ use crate::lab::{
 };
 use crate::render::{self, Looks};
 use crate::scene::{Camera, Finding, Geometry, Keep, LoadCx, LoadError, Scene};
-use crate::task::{Budget, Cancelled, Pool, Progress};
+use crate::task::{Budget, Cancel, Cancelled, Pool, Progress};
 
 /// What every job needs: threads, memory, and a way to wake the window.
 #[derive(Clone)]
@@ -82,7 +82,9 @@ fn build_now(key: Key, geometry: &Arc<Geometry>, cx: &BuildCx) -> Result<Built, 
 }
 
 /// Figures on their way, and of what.
-pub type Counting = (Key, Job<Result<(Stats, Quality), Cancelled>>);
+pub type Counting = (Key, Job<Result<Stats, Cancelled>>);
+/// What is predicted of rays, on its way.
+pub type Predicting = (Key, Job<Result<Quality, Cancelled>>);
 
 /// What is found out of a structure while its user waits for the figures: less exactly than on the
 /// command line, in a fraction of a second.
@@ -95,11 +97,16 @@ const SOON: QualityOptions = QualityOptions {
 /// Starts working out the figures of a structure.
 pub fn count(shared: &Shared, built: &Built) -> std::io::Result<Counting> {
     let (accel, weights) = (Arc::clone(&built.accel), SahWeights::of(&built.key.params));
+    let count = move |cancel: &Cancel, _: &Progress| Stats::of_structure(accel.as_ref(), weights, cancel);
+    Ok((built.key.clone(), Job::spawn("statistics", shared.waker(), count)?))
+}
+
+/// Starts working out what is predicted of rays, from the figures of a structure.
+pub fn predict(shared: &Shared, built: &Built, stats: Arc<Stats>) -> std::io::Result<Predicting> {
+    let (accel, weights) = (Arc::clone(&built.accel), SahWeights::of(&built.key.params));
     let Shared { pool, budget, .. } = shared.clone();
-    let job = Job::spawn("statistics", shared.waker(), move |cancel, _| {
-        let stats = Stats::of_structure(accel.as_ref(), weights, cancel)?;
-        let quality = Quality::of(accel.as_ref(), &stats, weights, &SOON, (&pool, &budget, cancel))?;
-        Ok((stats, quality))
+    let job = Job::spawn("prediction", shared.waker(), move |cancel, _| {
+        Quality::of(accel.as_ref(), &stats, weights, &SOON, (&pool, &budget, cancel))
     })?;
     Ok((built.key.clone(), job))
 }

@@ -14,6 +14,7 @@ mod hands;
 mod layout;
 mod measuring;
 mod modes;
+mod needs;
 mod opening;
 mod overlays;
 mod pace;

@@ -128,3 +128,19 @@ fn another_click_does_not_start_a_build_over() {
         None => assert_eq!(w.shown(), Some("kdtree"), "it is already there"),
     }
 }
+
+#[test]
+fn what_is_predicted_is_worked_out_once_somebody_looks_at_it() {
+    let quality = |w: &Window| w.state().shown.as_ref().is_some_and(|b| b.quality.is_some());
+    let mut w = Window::lecture();
+    assert!(!quality(&w) && !w.says("Nodes/line"));
+    w.click(Role::DisclosureTriangle, "Prediction");
+    w.until("predictions", |s| s.shown.as_ref().is_some_and(|b| b.quality.is_some()));
+    w.settle();
+    assert!(w.says("Nodes/line"));
+    // The section stays open, so the next structure's are worked out at once; those of the first are kept.
+    w.button("Grid");
+    w.until("those of the grid", |s| s.shown.as_ref().is_some_and(|b| b.key.entry.id == "grid" && b.quality.is_some()));
+    w.button("BVH");
+    assert!(quality(&w));
+}

@@ -12,11 +12,21 @@ use crate::viewer::state::State;
 
 /// Draws the section.
 pub fn show(ui: &mut Ui, state: &State, built: &Built, commands: &mut Commands) {
-    let Some(quality) = &built.quality else { return };
     CollapsingHeader::new("Prediction").id_salt("prediction").show(ui, |ui| {
-        lines(ui, quality);
-        overlap(ui, quality);
-        end_points(ui, quality);
+        match &built.quality {
+            Some(quality) => {
+                lines(ui, quality);
+                overlap(ui, quality);
+                end_points(ui, quality);
+            }
+            None => {
+                ui.spinner().on_hover_text("Working out what is predicted.");
+                // Nobody has looked at it before.
+                if state.awaits_prediction(built) && !state.is_measuring() {
+                    commands.push(Command::Predict);
+                }
+            }
+        }
         if let Some(costs) = state.timings.costs(&built.key) {
             measured(ui, costs, &built.key.params, commands);
         }

@@ -9,6 +9,7 @@ use crate::accel::stats::SahWeights;
 use crate::job::Outcome;
 use crate::scene::CameraSpec;
 use crate::viewer::history::{Choices, History, Kind};
+use crate::viewer::kept::Built;
 use crate::viewer::model::{self, Model};
 use crate::viewer::pick::Picked;
 use crate::viewer::timings::Timings;
@@ -45,6 +46,7 @@ impl State {
             (self.camera, self.framed) = (camera, None);
         }
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
+        (self.predicting, self.predicted) = (None, None);
         (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
         self.picking = None;
         (self.decoding, self.textures_are_there) = (None, false);
@@ -95,11 +97,11 @@ impl State {
         let Some((key, job)) = &self.counting else { return self.count() };
         match job.poll() {
             Outcome::Running => return,
-            Outcome::Done(Ok((stats, quality))) => {
-                let (stats, quality) = (Arc::new(stats), Arc::new(quality));
-                self.kept.add_stats(key, &stats, &quality);
+            Outcome::Done(Ok(stats)) => {
+                let stats = Arc::new(stats);
+                self.kept.add_stats(key, &stats);
                 if let Some(shown) = self.shown.as_mut().filter(|b| b.key == *key) {
-                    (shown.stats, shown.quality) = (Some(stats), Some(quality));
+                    shown.stats = Some(stats);
                 }
                 self.clamp_depth();
             }
@@ -116,6 +118,36 @@ impl State {
             self.counted = Some(shown.key.clone());
             self.counting = workers::count(&self.shared, shown).ok();
         }
+    }
+
+    /// Works out what is predicted of rays in the shown structure, once its figures are there.
+    pub(super) fn predict(&mut self) {
+        let Some(shown) = self.shown.as_ref().filter(|shown| self.awaits_prediction(shown)) else { return };
+        if let (Some(stats), None) = (&shown.stats, &self.measuring) {
+            self.predicted = Some(shown.key.clone());
+            self.predicting = workers::predict(&self.shared, shown, Arc::clone(stats)).ok();
+        }
+    }
+
+    /// Whether what is predicted of rays in the shown structure is yet to be asked for.
+    pub fn awaits_prediction(&self, shown: &Built) -> bool {
+        shown.quality.is_none() && self.predicted.as_ref() != Some(&shown.key)
+    }
+
+    pub(super) fn advance_prediction(&mut self) {
+        let Some((key, job)) = &self.predicting else { return };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(quality)) => {
+                let quality = Arc::new(quality);
+                self.kept.add_quality(key, &quality);
+                if let Some(shown) = self.shown.as_mut().filter(|b| b.key == *key) {
+                    shown.quality = Some(quality);
+                }
+            }
+            Outcome::Done(Err(_)) | Outcome::Died => {}
+        }
+        self.predicting = None;
     }
 
     /// Decodes the scene's images once its first picture is on the screen.

@@ -25,7 +25,7 @@ use super::pick::Picked;
 use super::settings::Settings;
 use super::timings::Timings;
 use super::workers::{
-    self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Needing, Picking, Plan, Shared,
+    self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Needing, Picking, Plan, Predicting, Shared,
 };
 use crate::accel::{CellId, cell};
 use crate::geometry::tri::TestKind;
@@ -113,6 +113,9 @@ pub struct State {
     /// The structure whose figures were asked for last.
     counted: Option<Key>,
     counting: Option<Counting>,
+    predicting: Option<Predicting>,
+    /// The structure whose predictions were asked for last.
+    predicted: Option<Key>,
     decoding: Option<Decoding>,
     /// Whether decoding has come to its end.
     textures_are_there: bool,
@@ -129,6 +132,8 @@ pub struct State {
     renderer: Renderer,
     requested: Option<Asked>,
     requested_at: Instant,
+    /// How long the present frame has held on for a picture.
+    held_on: Duration,
     /// Nodes a ray of the structure shown before, to be compared once the new one is counted.
     before: Option<(&'static str, f64)>,
     generation: u64,
@@ -208,6 +213,8 @@ impl State {
             seen: None,
             counted: None,
             counting: None,
+            predicting: None,
+            predicted: None,
             decoding: None,
             textures_are_there: false,
             collecting: None,
@@ -221,6 +228,7 @@ impl State {
             renderer,
             requested: None,
             requested_at: Instant::now(),
+            held_on: Duration::ZERO,
             before: None,
             generation: 0,
             shared,
@@ -258,7 +266,12 @@ impl State {
         let asked = self.requested.as_ref().map(|a| a.number);
         let at_rest = |p: &Arc<Picture>| p.progress.done && Some(p.request) == asked;
         let drawing = self.shown.is_some() && !(self.picture.as_ref().is_some_and(at_rest) && self.overlay_is_current);
-        self.loading.is_some() || self.building.is_some() || self.measuring.is_some() || self.counting.is_some() || drawing
+        self.loading.is_some()
+            || self.building.is_some()
+            || self.measuring.is_some()
+            || self.counting.is_some()
+            || self.predicting.is_some()
+            || drawing
     }
 
     /// Does one thing that a panel asked for. Commands that concern the window itself are the app's.
@@ -318,6 +331,7 @@ impl State {
             Command::ToggleProjection => self.look(navigation::toggle_projection(&self.camera), Kind::Single),
             Command::MaxSamples(n) => self.settings.max_samples = n.max(1),
             Command::Measure => self.measure(),
+            Command::Predict => self.predict(),
             Command::MeasureNeeds => self.measure_needs(),
             Command::CancelNeeds => self.needing = None,
             Command::Instances(instances) => self.reopen(instances),
@@ -529,6 +543,7 @@ impl State {
 
     /// Takes in what jobs have finished, and starts what follows from it. Called once a frame.
     pub fn advance(&mut self) {
+        self.held_on = Duration::ZERO;
         self.advance_dialog();
         self.advance_load();
         self.advance_build();
@@ -541,8 +556,14 @@ impl State {
         self.follow_viewport();
         self.refresh_picture();
         self.advance_statistics();
+        self.advance_prediction();
         self.advance_textures();
         self.refresh_overlay();
+    }
+
+    /// How long the last [`Self::advance`] has held on for a picture, which is no work.
+    pub fn held_on(&self) -> Duration {
+        self.held_on
     }
 
     /// How the shown structure's cells relate.
