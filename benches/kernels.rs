@@ -1,17 +1,15 @@
 //! What rays spend their time in, by itself: eight boxes, eight triangles, one triangle and eight rays, each on
-//! every road; and the loop over all triangles with nobody who watches beside the same loop written out.
+//! every road.
 
 use std::hint::black_box;
 use std::sync::Arc;
 
-use boxwood::accel::{Accel, BuildCx, Hit, Mode, registry};
 use boxwood::geometry::eight::Rays;
 use boxwood::geometry::slabs::Boxes;
-use boxwood::geometry::tri::{Block, Eight, Fast, TestKind, TriTest, Watertight, corners, splat_own};
+use boxwood::geometry::tri::{Block, Fast, TriTest, Watertight, corners, splat_own};
 use boxwood::geometry::{EightSlabs, Ray};
 use boxwood::scene::{self, Geometry, LoadCx};
-use boxwood::simd::{Kernel, LANES, Portable, Road, Simd};
-use boxwood::task::Cancel;
+use boxwood::simd::{Kernel, LANES, Road, Simd};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 
@@ -128,51 +126,5 @@ fn kernels(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The loop of `brute` written out: no probe, no query, no tie to ask about in a soup.
-fn by_hand(geometry: &Geometry, blocks: &[Block], rays: &[Ray], hits: &mut [Option<Hit>]) {
-    for (ray, hit) in rays.iter().zip(hits) {
-        let entered = geometry.space().enter(ray);
-        let test = Watertight::prepare(&entered.ray, geometry.bounds());
-        let mut best = None;
-        let mut end = entered.ray.tmax;
-        for (b, block) in blocks.iter().enumerate() {
-            let mut left = test.may_meet(Portable, &corners(Portable, block, test.axes()));
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
-                left &= left - 1;
-                if b * LANES + lane < geometry.live_count()
-                    && let Some(found) = test.hit(&block.triangle(lane), entered.ray.tmin, end)
-                {
-                    end = found.t;
-                    best = Some((found, geometry.live(b * LANES + lane)));
-                }
-            }
-        }
-        *hit = best.map(|(found, prim)| {
-            let (instance, primitive) = geometry.locate(prim);
-            Hit { t: entered.back.world_t(found.t), u: found.u, v: found.v, instance, primitive }
-        });
-    }
-}
-
-fn off(criterion: &mut Criterion) {
-    let geometry = geometry();
-    let (rays, blocks) = (rays(&geometry), blocks(&geometry));
-    let brute = registry::find("brute").expect("registered");
-    let brute = brute.build(&geometry, TestKind::Watertight, &brute.defaults(), &BuildCx::unattended(1)).expect("small");
-    let trace = |accel: &dyn Accel, hits: &mut [Option<Hit>]| {
-        accel.trace(black_box(&rays), Mode::Closest, hits, &Cancel::new()).expect("not cancelled");
-    };
-    let (mut a, mut b) = (vec![None; rays.len()], vec![None; rays.len()]);
-    trace(&*brute, &mut a);
-    by_hand(&geometry, &blocks, &rays, &mut b);
-    assert_eq!(a, b, "both find the same");
-    let mut group = criterion.benchmark_group("off");
-    group.sample_size(10).throughput(Throughput::Elements((rays.len() * geometry.live_count()) as u64));
-    group.bench_function("probe off", |bench| bench.iter(|| trace(&*brute, &mut a)));
-    group.bench_function("by hand", |bench| bench.iter(|| by_hand(&geometry, &blocks, black_box(&rays), &mut b)));
-    group.finish();
-}
-
-criterion_group!(benches, kernels, off);
+criterion_group!(benches, kernels);
 criterion_main!(benches);

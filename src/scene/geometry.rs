@@ -82,7 +82,8 @@ impl Geometry {
     /// # Errors
     /// Cancelled, over the memory budget, or more triangles or vertices than 32 bits can index.
     pub fn new(scene: &Scene, cx: &LoadCx) -> Result<Self, Reason> {
-        let pieces: Vec<Piece> = (0..num::index(scene.instances.len())).map(|i| Piece::of(scene, i)).collect();
+        let count = instance_count(scene)?;
+        let pieces: Vec<Piece> = (0..count).map(|i| Piece::of(scene, i)).collect();
         Self::of_pieces(&pieces, Aabb::EMPTY, cx)
     }
 
@@ -92,6 +93,7 @@ impl Geometry {
     /// # Errors
     /// As [`Self::new`]; the limit of 32 bits holds for what is flattened, and for each mesh.
     pub fn with_instances(scene: &Scene, cx: &LoadCx) -> Result<Self, Reason> {
+        instance_count(scene)?;
         let mut sorted = Sorted::new(scene, cx.keep);
         if sorted.all_flat() {
             return Self::new(scene, cx);
@@ -324,6 +326,12 @@ impl Geometry {
         let own = (self.positions.len() * 12 + self.triangles.len() * 12 + live) as u64 + self.owners.bytes();
         own + self.placed.as_ref().map_or(0, Placed::bytes)
     }
+}
+
+/// How many instances there are, if they can be numbered.
+fn instance_count(scene: &Scene) -> Result<u32, Reason> {
+    let count = scene.instances.len();
+    if count > num::MAX_INDEX { Err(Reason::TooLarge(count as u64, "instances")) } else { Ok(num::index(count)) }
 }
 
 impl<'a> Piece<'a> {
