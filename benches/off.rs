@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use boxwood::accel::{BuildCx, Hit, Mode, registry};
 use boxwood::geometry::Ray;
-use boxwood::geometry::tri::{Block, TestKind, TriTest, Watertight, corners};
+use boxwood::geometry::tri::{Block, Eight, TestKind, TriTest, Watertight, corners};
 use boxwood::scene::{self, Geometry, LoadCx};
 use boxwood::simd::{LANES, Portable};
 use boxwood::task::Cancel;

@@ -8,7 +8,7 @@ use super::gpu::{BoxInstance, Overlay, Ruler, View};
 use super::settings::OverlaySettings;
 use super::theme;
 use crate::accel::Accel;
-use crate::accel::cell::{Cell, CellKind, Descend, Layout, Split, bounds_in_scene, walk};
+use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Split, bounds_in_scene, walk};
 use crate::geometry::{Aabb, Axis};
 use crate::task::{Cancel, Cancelled};
 
@@ -47,16 +47,19 @@ const CELLS_PER_CHECK: u64 = 4096;
 struct Found {
     px: f32,
     depth: u32,
+    /// In the space of its level.
     bounds: Aabb,
+    /// Which that is, as of [`crate::accel::CellId`].
+    instance: u32,
     plane: bool,
     /// Who goes first among those that are about as large.
     rank: u32,
 }
 
 impl Found {
-    fn new(cell: &Cell, bounds: Aabb, px: f32) -> Self {
-        let number = cell.id.node ^ scatter(cell.id.instance);
-        Self { px, depth: cell.depth, bounds, plane: false, rank: scatter(number) }
+    fn new(cell: &Cell, px: f32) -> Self {
+        let (instance, bounds) = (cell.id.instance, *cell.shape.bounds());
+        Self { px, depth: cell.depth, bounds, instance, plane: false, rank: scatter(cell.id.node ^ scatter(instance)) }
     }
 
     fn order(&self) -> (Reverse<u32>, u32, bool) {
@@ -109,7 +112,7 @@ pub fn collect(accel: &dyn Accel, wanted: &Wanted, cancel: &Cancel) -> Result<Co
         if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell)) }
     });
     stopped?;
-    Ok(collector.finish())
+    Ok(collector.finish(accel))
 }
 
 impl Collector<'_> {
@@ -124,18 +127,16 @@ impl Collector<'_> {
         if self.wants_box(cell) {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found::new(cell, bounds, px));
+                self.found.push(Found::new(cell, px));
             }
         }
         if let Some(Split::Axis { axis, pos }) = cell.split
             && s.planes
-            // A placed mesh may be turned; its planes are not parallel to the axes then.
-            && bounds == *cell.shape.bounds()
             && (s.from_depth..=s.depth).contains(&cell.depth)
         {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found { bounds: plane_in(&bounds, axis, pos), plane: true, ..Found::new(cell, bounds, px) });
+                self.found.push(Found { bounds: plane_in(cell.shape.bounds(), axis, pos), plane: true, ..Found::new(cell, px) });
             }
         }
         let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
@@ -168,7 +169,7 @@ impl Collector<'_> {
 
     /// The largest on the screen, as many as are drawn fluently, of those about as large some from
     /// everywhere; deeper levels over higher ones.
-    fn finish(mut self) -> Collected {
+    fn finish(mut self, accel: &dyn Accel) -> Collected {
         let limit = self.wanted.limit.max(1);
         if self.found.len() > limit {
             self.found.select_nth_unstable_by_key(limit - 1, Found::order);
@@ -179,10 +180,18 @@ impl Collector<'_> {
         let shown = depths.clone().min().unwrap_or(0)..=depths.max().unwrap_or(0);
         let mut overlay = Overlay::default();
         for f in &self.found {
-            let instance = BoxInstance::new(&f.bounds, theme::depth_color(f.depth, &shown).to_array());
+            let instance = placed(accel, f.instance, &f.bounds, theme::depth_color(f.depth, &shown).to_array());
             if f.plane { overlay.planes.push(instance) } else { overlay.boxes.push(instance) }
         }
         Collected { overlay, shown: self.found.len(), total: self.total, more: self.more }
+    }
+}
+
+/// A box in the space of a level (see [`crate::accel::CellId`]), where it is in the scene.
+pub fn placed(accel: &dyn Accel, instance: u32, bounds: &Aabb, color: [u8; 4]) -> BoxInstance {
+    match accel.level(instance) {
+        Some(Level { instance: Some(_), scene_from_level }) => BoxInstance::turned(bounds, &scene_from_level, color),
+        _ => BoxInstance::new(bounds, color),
     }
 }
 
@@ -227,7 +236,7 @@ mod tests {
             // Of four by four by four parts, how many cells are in each.
             let mut parts = [0; 64];
             for cell in &collected.overlay.boxes {
-                let at = ((Vec3::from(cell.min) + Vec3::from(cell.max)) * 0.5 - bounds.min) / bounds.size();
+                let at = (cell.at(Vec3::splat(0.5)) - bounds.min) / bounds.size();
                 let [x, y, z] = at.to_array().map(|x| (x * 4.0) as usize);
                 parts[x + 4 * y + 16 * z] += 1;
             }
@@ -237,7 +246,7 @@ mod tests {
 
     #[test]
     fn the_larger_go_first() {
-        let cell = |px: f32, rank: u32| Found { px, depth: 0, bounds: Aabb::EMPTY, plane: false, rank };
+        let cell = |px: f32, rank: u32| Found { px, depth: 0, bounds: Aabb::EMPTY, instance: 0, plane: false, rank };
         assert!(cell(20.0, 9).order() < cell(9.0, 1).order() && cell(10.0, 9).order() > cell(11.0, 1).order());
         assert_eq!(size_class(64.0_f32.next_down()), size_class(64.0_f32.next_up()));
     }

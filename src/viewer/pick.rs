@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::format;
 use super::gpu::BoxInstance;
+use super::overlay::placed;
 use crate::accel::cell::{Cell, Descend, bounds_in_scene, walk};
 use crate::accel::probe::{Counts, Step, Watched};
 use crate::accel::{Accel, Hit, Mode};
@@ -20,7 +21,7 @@ pub struct Picked {
     /// The cells that hold the point, from the root to the leaf.
     pub path: Vec<Cell>,
     /// Their boxes, in the scene's scaled space.
-    pub boxes: Vec<Aabb>,
+    pub boxes: Vec<BoxInstance>,
     /// Which of them is selected.
     pub level: usize,
     /// What the ray of the click did, step by step.
@@ -37,7 +38,7 @@ impl Picked {
 
     /// Its box, in the scaled space.
     pub fn selected_box(&self) -> Option<BoxInstance> {
-        self.boxes.get(self.level).map(|bounds| BoxInstance::new(bounds, [u8::MAX; 4]))
+        self.boxes.get(self.level).copied()
     }
 }
 
@@ -60,7 +61,7 @@ pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray, cancel: &Cancel) -> Res
     let depth = path.last().map(|leaf| format!(", leaf at depth {}", leaf.depth)).unwrap_or_default();
     let work = format!("{} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
     let text = format!("Triangle {}{name}{depth}: this ray took {work}", format::count(u64::from(hit.primitive)));
-    let boxes = path.iter().map(|cell| bounds_in_scene(accel, cell)).collect();
+    let boxes = path.iter().map(|cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4])).collect();
     Ok(Some(Picked { text, level: path.len().saturating_sub(1), path, boxes, steps, more_steps }))
 }
 

@@ -78,7 +78,7 @@ fn the_lecture_is_drawn_with_its_boxes() {
     let line = depth_color(depth, &(depth..=depth));
     assert!(overlay.boxes.len() > 1);
     for b in &overlay.boxes {
-        let (x, y) = place(&w, Vec3::new((b.min[0] + b.max[0]) * 0.5, b.max[1], b.max[2]));
+        let (x, y) = place(&w, b.at(Vec3::new(0.5, 1.0, 1.0)));
         let near = (y.saturating_sub(2)..=y + 2).map(|y| boxed.get_pixel(x, y).0);
         // A line of 1.5 pixels covers three quarters of some pixel at least; the rest is the dark halo.
         let close = |p: [u8; 4]| p.iter().zip(line.to_array()).all(|(p, q)| p.abs_diff(q) <= q / 4 + 4);

@@ -84,14 +84,16 @@ fn screen_linear(depth: f32) -> f32 {
     return select(1.0 / depth, depth, view.orthographic > 0.5);
 }
 
-// Four corners an edge, twelve edges a box, four along each axis.
+// Four corners an edge, twelve edges a box, four along each of its axes.
 @vertex
 fn vertex(
     @builtin(vertex_index) i: u32,
     @builtin(instance_index) instance: u32,
-    @location(0) low: vec3f,
-    @location(1) high: vec3f,
-    @location(2) color: vec4f,
+    @location(0) corner: vec3f,
+    @location(1) edge_x: vec3f,
+    @location(2) edge_y: vec3f,
+    @location(3) edge_z: vec3f,
+    @location(4) color: vec4f,
 ) -> Edge {
     let axis = i / 16u;
     let first = (i / 4u) % 2u == 1u;
@@ -99,12 +101,13 @@ fn vertex(
     let along = vec3<bool>(axis == 0u, axis == 1u, axis == 2u);
     let at_high = vec3<bool>(first && axis != 0u, select(second, first, axis == 0u) && axis != 1u, second && axis != 2u);
     // A flat box has its edges once, not twice on top of each other.
-    let is_flat = high <= low;
+    let edges = mat3x3f(edge_x, edge_y, edge_z);
+    let is_flat = vec3<bool>(all(edge_x == vec3f(0.0)), all(edge_y == vec3f(0.0)), all(edge_z == vec3f(0.0)));
     if any(is_flat & (along | at_high)) {
         return NOWHERE;
     }
-    let a = seen_from_eye(select(low, high, at_high));
-    let b = seen_from_eye(select(low, high, at_high | along));
+    let a = seen_from_eye(corner + edges * vec3f(at_high));
+    let b = seen_from_eye(corner + edges * vec3f(at_high | along));
     let t = in_view(a, b);
     if t.x >= t.y {
         return NOWHERE;

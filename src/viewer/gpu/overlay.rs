@@ -3,18 +3,19 @@
 use std::ops::Range;
 
 use eframe::wgpu;
+use glam::{DAffine3, DVec3, Vec3};
 
 use crate::geometry::{Aabb, num};
 
-/// A box whose edges are drawn, in the scaled space. A flat one, if it is among the planes, is
+/// A box whose edges are drawn, in the scaled space, turned or not. A flat one, if it is among the planes, is
 /// filled as well.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct BoxInstance {
-    /// The least corner.
-    pub min: [f32; 3],
-    /// The greatest corner.
-    pub max: [f32; 3],
+    /// The corner that is the least in the space of the cell.
+    pub corner: [f32; 3],
+    /// The three edges from there; zero along which it is flat.
+    pub edges: [[f32; 3]; 3],
     /// Gamma-encoded colour, and opacity.
     pub color: [u8; 4],
 }
@@ -22,14 +23,30 @@ pub struct BoxInstance {
 impl BoxInstance {
     /// A box in a colour.
     pub fn new(cell: &Aabb, color: [u8; 4]) -> Self {
-        Self { min: cell.min.to_array(), max: cell.max.to_array(), color }
+        let [x, y, z] = cell.size().to_array();
+        Self { corner: cell.min.to_array(), edges: [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]], color }
+    }
+
+    /// A box of another space, brought into the scaled one: a parallelepiped.
+    pub fn turned(cell: &Aabb, scene_from_cell: &DAffine3, color: [u8; 4]) -> Self {
+        let size = cell.size().as_dvec3();
+        let edge = |axis: DVec3, length: f64| (axis * length).as_vec3().to_array();
+        let m = &scene_from_cell.matrix3;
+        let corner = scene_from_cell.transform_point3(cell.min.as_dvec3()).as_vec3().to_array();
+        Self { corner, edges: [edge(m.x_axis, size.x), edge(m.y_axis, size.y), edge(m.z_axis, size.z)], color }
+    }
+
+    /// The point so far along each of its edges.
+    pub fn at(&self, along: Vec3) -> Vec3 {
+        let [x, y, z] = self.edges.map(Vec3::from_array);
+        Vec3::from_array(self.corner) + x * along.x + y * along.y + z * along.z
     }
 
     /// How the GPU reads it.
     pub(super) const LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
         array_stride: size_of::<Self>() as u64,
         step_mode: wgpu::VertexStepMode::Instance,
-        attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4],
+        attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Unorm8x4],
     };
 }
 

@@ -1,4 +1,4 @@
-// Translucent axis-parallel rectangles: flat boxes, filled.
+// Translucent parallelograms: flat boxes, filled.
 
 override FILL: f32;
 override FILL_HIDDEN: f32;
@@ -12,19 +12,21 @@ struct Corner {
 @vertex
 fn vertex(
     @builtin(vertex_index) i: u32,
-    @location(0) low: vec3f,
-    @location(1) high: vec3f,
-    @location(2) color: vec4f,
+    @location(0) corner: vec3f,
+    @location(1) edge_x: vec3f,
+    @location(2) edge_y: vec3f,
+    @location(3) edge_z: vec3f,
+    @location(4) color: vec4f,
 ) -> Corner {
     let first = (i & 1u) == 1u;
     let second = (i & 2u) == 2u;
     var at_high = vec3<bool>(first, second, false);
-    if high.x <= low.x {
+    if all(edge_x == vec3f(0.0)) {
         at_high = vec3<bool>(false, first, second);
-    } else if high.y <= low.y {
+    } else if all(edge_y == vec3f(0.0)) {
         at_high = vec3<bool>(first, false, second);
     }
-    let seen = seen_from_eye(select(low, high, at_high));
+    let seen = seen_from_eye(corner + mat3x3f(edge_x, edge_y, edge_z) * vec3f(at_high));
     var position = clip_space(seen);
     // Only the near plane may cut it: a plane may reach farther than the scene.
     position.z = select(position.z, 0.5, view.orthographic > 0.5);

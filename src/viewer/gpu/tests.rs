@@ -64,7 +64,7 @@ fn picture(generation: u64, width: u32, height: u32, rgba: Vec<u8>, depth: Vec<f
 const YELLOW: [u8; 4] = [255, 230, 40, 255];
 
 fn boxed(min: [f32; 3], max: [f32; 3]) -> BoxInstance {
-    BoxInstance { min, max, color: YELLOW }
+    BoxInstance::new(&Aabb { min: min.into(), max: max.into() }, YELLOW)
 }
 
 fn overlay(boxes: Vec<BoxInstance>) -> Option<Arc<Overlay>> {
