@@ -11,7 +11,7 @@ use common::{geometry_of, scene_of, soup};
 fn what_a_refusal_names_fits_the_budget() {
     let geometry = geometry_of(&scene_of(&soup(60_000, 0.02, 72)));
     let (mut named, mut grids) = (0, 0);
-    for bytes_per_triangle in [8, 50, 100, 200] {
+    for bytes_per_triangle in [8, 50, 100, 200, 230, 290] {
         for entry in registry::ALL {
             let cx = || BuildCx { budget: Budget::new(bytes_per_triangle * 60_000), ..BuildCx::unattended(2) };
             let built = entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &cx());

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use boxwood::accel::{self, Accel, registry};
 use boxwood::geometry::tri::TestKind;
-use boxwood::render::{Film, Job, Mode, Renderer, Request, render};
+use boxwood::render::{Development, Film, Job, Mode, Range, Renderer, Request, render};
 use boxwood::scene::{Camera, Projection};
 use boxwood::task::{Cancel, Pool, Progress};
 use common::{ball, build, geometry_of, scene_of, soup};
@@ -128,4 +128,36 @@ fn the_renderer_refines_rests_and_pauses() {
     drop(pause);
     wait(second, running.progress.samples + 2);
     assert!(second > first);
+}
+
+#[test]
+fn pixels_that_have_converged_get_no_more_rays_and_look_the_same() {
+    for (triangles, mode) in [(ball(12), Mode::Shaded), (soup(60, 0.3, 3), Mode::Shaded), (ball(12), Mode::Ao)] {
+        let job = job(&triangles, "bvh", mode);
+        let (pool, cancel) = (Pool::new("test", 2), Cancel::new());
+        let (mut all, mut part) = (Film::new(90, 60), Film::converging(90, 60));
+        let (mut rays, mut fewer) = (Vec::new(), Vec::new());
+        for _ in 0..200 {
+            rays.push(job.pass(&mut all, &pool, &cancel).expect("not cancelled"));
+            fewer.push(job.pass(&mut part, &pool, &cancel).expect("not cancelled"));
+        }
+        assert_eq!(rays[..16], fewer[..16], "so many samples each pixel gets");
+        let (last, first) = (fewer[199], fewer[0]);
+        assert!(last < first && last > 0, "{mode:?}: {last} of {first} rays");
+        if mode == Mode::Shaded {
+            assert!(last * 10 < first * 9, "{last} of {first} rays are left");
+        }
+        let ranged = Development { mode, range: Range { min: 0.0, max: 1.0 }, background: None };
+        let (all, part) = pool.run(|| (ranged.develop(&all), ranged.develop(&part)));
+        let most = all.iter().zip(&part).map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(most <= Some(2), "{mode:?}: {most:?} steps");
+        assert!(!Film::converging(9, 9).is_done(1));
+    }
+    // Nothing to be seen is done with the first pass.
+    let mut job = job(&ball(4), "bvh", Mode::Shaded);
+    job.camera.eye = Vec3::new(0.0, 0.0, 50.0);
+    job.camera.target = Vec3::new(0.0, 0.0, 100.0);
+    let mut film = Film::converging(30, 20);
+    assert_eq!(job.pass(&mut film, &Pool::new("test", 1), &Cancel::new()), Ok(0));
+    assert!(film.is_done(4096));
 }

@@ -52,10 +52,9 @@ impl Development {
     /// pool that it is called in.
     pub fn develop(&self, film: &Film) -> Vec<u8> {
         let mut rgba = vec![0; film.pixels() * 4];
-        rgba.par_chunks_mut(4 * CHUNK).zip(film.sums().par_chunks(CHUNK)).for_each(|(rgba, sums)| {
-            let scale = 1.0 / film.samples().max(1) as f32;
-            for (rgba, sum) in rgba.as_chunks_mut().0.iter_mut().zip(sums) {
-                *rgba = self.pixel(sum.map(|x| x * scale));
+        rgba.par_chunks_mut(4 * CHUNK).enumerate().for_each(|(chunk, rgba)| {
+            for (pixel, rgba) in (chunk * CHUNK..).zip(rgba.as_chunks_mut().0) {
+                *rgba = self.pixel(film.mean(pixel));
             }
         });
         rgba
@@ -85,7 +84,7 @@ const STEPS: usize = 4096;
 
 /// Linear light to sRGB by a table, linear in between: a twentieth of a byte's step off at most, and
 /// far faster than a power for each channel of each pixel.
-fn encode(x: f32) -> f32 {
+pub(super) fn encode(x: f32) -> f32 {
     static TABLE: LazyLock<Vec<f32>> = LazyLock::new(|| (0..=STEPS).map(|i| srgb(i as f32 / STEPS as f32)).collect());
     let at = x.clamp(0.0, 1.0) * STEPS as f32;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]

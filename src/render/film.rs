@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::spread::{self, Spread};
+
 /// Sums of samples. A pixel is red, green, blue and coverage; in scalar modes the first is the
 /// amount. Row 0 is the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,17 +14,35 @@ pub struct Film {
     /// Linear depth of the first sample, infinite for a miss, in the scaled space.
     depth: Arc<Vec<f32>>,
     samples: u32,
+    /// How sure each pixel is, where those that are get no more samples.
+    spreads: Option<Vec<Spread>>,
+    /// No pixel gets more samples.
+    at_rest: bool,
 }
 
-/// The sums of some rows, and their depths while they are still to be written.
-pub(super) type Band<'a> = (&'a mut [[f32; 4]], Option<&'a mut [f32]>);
+/// What of a film some rows are.
+pub(super) struct Band<'a> {
+    /// The sums.
+    pub sums: &'a mut [[f32; 4]],
+    /// The depths, while they are still to be written.
+    pub depth: Option<&'a mut [f32]>,
+    /// How sure the pixels are, if that is asked.
+    pub spreads: Option<&'a mut [Spread]>,
+}
 
 impl Film {
     /// An empty film of at least one pixel.
     pub fn new(width: u32, height: u32) -> Self {
         let (width, height) = (width.max(1), height.max(1));
         let pixels = width as usize * height as usize;
-        Self { width, height, sums: vec![[0.0; 4]; pixels], depth: Arc::new(vec![f32::INFINITY; pixels]), samples: 0 }
+        let depth = Arc::new(vec![f32::INFINITY; pixels]);
+        Self { width, height, sums: vec![[0.0; 4]; pixels], depth, samples: 0, spreads: None, at_rest: false }
+    }
+
+    /// The same, of which pixels that have converged get no more samples.
+    pub fn converging(width: u32, height: u32) -> Self {
+        let film = Self::new(width, height);
+        Self { spreads: Some(vec![Spread::default(); film.pixels()]), ..film }
     }
 
     /// Columns.
@@ -35,26 +55,39 @@ impl Film {
         self.height
     }
 
-    /// Samples in each pixel.
+    /// Samples in each pixel, but for those that have converged before.
     pub const fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// Counts a pass as done.
-    pub(super) const fn pass_done(&mut self) {
+    /// Counts a pass as done, in which so many rays were traced.
+    pub(super) const fn pass_done(&mut self, rays: u64) {
         self.samples += 1;
+        self.at_rest = rays == 0;
+    }
+
+    /// Whether it has so many samples, or no pixel gets more.
+    pub const fn is_done(&self, max_samples: u32) -> bool {
+        self.samples >= max_samples || self.at_rest
+    }
+
+    /// For each pixel whether it has converged; `None` if nobody asks, or none can have.
+    pub(super) fn converged(&self) -> Option<Vec<bool>> {
+        let spreads = self.spreads.as_ref().filter(|_| self.samples >= spread::LEAST);
+        spreads.map(|spreads| spread::at_rest(spreads, self.width as usize))
     }
 
     /// Bands of rows: sums to add to and, for the first sample, depths to write. Later the depths are
     /// shared with pictures and stay as they are.
     pub(super) fn bands_mut(&mut self, rows: usize) -> Vec<Band<'_>> {
         let chunk = rows * self.width as usize;
-        let sums = self.sums.chunks_mut(chunk);
-        if self.samples > 0 {
-            return sums.map(|sums| (sums, None)).collect();
-        }
-        let depth = Arc::make_mut(&mut self.depth).chunks_mut(chunk);
-        sums.zip(depth.map(Some)).collect()
+        let mut depth = (self.samples == 0).then(|| Arc::make_mut(&mut self.depth).chunks_mut(chunk));
+        let mut spreads = self.spreads.as_mut().map(|spreads| spreads.chunks_mut(chunk));
+        let band = |sums| {
+            let (depth, spreads) = (depth.as_mut().and_then(Iterator::next), spreads.as_mut().and_then(Iterator::next));
+            Band { sums, depth, spreads }
+        };
+        self.sums.chunks_mut(chunk).map(band).collect()
     }
 
     /// Their number.
@@ -62,15 +95,17 @@ impl Film {
         self.sums.len()
     }
 
-    /// The sums of each pixel's samples.
-    pub(super) fn sums(&self) -> &[[f32; 4]] {
-        &self.sums
+    /// The mean of a pixel's samples.
+    #[inline]
+    pub(super) fn mean(&self, pixel: usize) -> [f32; 4] {
+        let n = self.spreads.as_ref().map_or(self.samples, |spreads| spreads[pixel].n);
+        let scale = 1.0 / n.max(1) as f32;
+        self.sums[pixel].map(|x| x * scale)
     }
 
     /// The mean of each pixel's samples.
     pub fn means(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
-        let scale = 1.0 / self.samples.max(1) as f32;
-        self.sums.iter().map(move |s| s.map(|x| x * scale))
+        (0..self.pixels()).map(|pixel| self.mean(pixel))
     }
 
     /// Linear depths of the first sample, in the scaled space.

@@ -12,6 +12,7 @@ pub mod raster;
 pub mod sampler;
 mod shade;
 pub mod spawn;
+mod spread;
 mod still;
 mod tile;
 

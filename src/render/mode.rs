@@ -64,6 +64,14 @@ impl Mode {
         matches!(self, Self::Depth | Self::Nodes | Self::Prims)
     }
 
+    /// Rays that a pixel takes for a sample, at most.
+    pub const fn rays_per_pixel(self) -> f64 {
+        match self {
+            Self::Ao => 2.0,
+            _ => 1.0,
+        }
+    }
+
     /// Whether the traversal is watched.
     pub const fn is_heat(self) -> bool {
         matches!(self, Self::Nodes | Self::Prims)

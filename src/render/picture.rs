@@ -38,6 +38,8 @@ pub struct Progress {
     pub step: u32,
     /// Seconds from the request to this picture.
     pub secs: f64,
+    /// Rays of this pass over the most that all pixels could take: the other pixels cannot see the scene, or have converged.
+    pub share: f64,
     /// Rays traced a second in this pass, by all threads.
     pub rays_per_sec: f64,
     /// What camera rays do in this view: summed over [`Self::counted`] of them.

@@ -1,6 +1,6 @@
 //! Refines a picture on threads of its own: a coarse pass of the whole view first, fine enough to
-//! come within [`FIRST_PASS_SECS`], then finer ones, then samples that accumulate to a limit; then
-//! the processors rest.
+//! come within [`FIRST_PASS_SECS`], then finer ones, then samples that accumulate to a limit, or until all
+//! pixels have converged; then the processors rest.
 //!
 //! ```text
 //! request ─► step 8 ─► 4 ─► 2 ─► 1 ─► 2nd sample ─► 3rd … limit ─► wait
@@ -11,7 +11,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::tile::Job;
-use super::{Development, Film, Mode, Picture, Progress, Range, auto_range};
+use super::{Development, Film, Picture, Progress, Range, auto_range};
 use crate::accel;
 use crate::accel::probe::Counts;
 use crate::task::{Cancel, Cancelled, Pool};
@@ -214,7 +214,7 @@ impl<N: Fn()> Worker<N> {
             if state.pauses == 0
                 && let Some(request) = &state.request
             {
-                let unfinished = |task: &Task| task.film.as_ref().is_none_or(|f| f.samples() < task.request.max_samples);
+                let unfinished = |task: &Task| task.film.as_ref().is_none_or(|f| !f.is_done(task.request.max_samples));
                 let next = if fresh { Some(Task::new(request.clone(), state.number)) } else { present.filter(unfinished) };
                 if let Some(task) = next {
                     state.cancel = Cancel::new();
@@ -250,10 +250,12 @@ impl<N: Fn()> Worker<N> {
                 self.pass(task, &mut film, step, cancel)?;
                 step /= 2;
             }
-            task.film = Some(Film::new(task.request.width, task.request.height));
+            // Amounts are no colours: how sure they are is not asked.
+            let film = if task.request.job.mode.is_scalar() { Film::new } else { Film::converging };
+            task.film = Some(film(task.request.width, task.request.height));
         }
         let Some(mut film) = task.film.take() else { return Ok(()) };
-        while film.samples() < task.request.max_samples {
+        while !film.is_done(task.request.max_samples) {
             // A stopped pass has left parts of a sample behind: keep what was whole.
             let whole = film.clone();
             if let Err(stopped) = self.pass(task, &mut film, 1, cancel) {
@@ -279,9 +281,10 @@ impl<N: Fn()> Worker<N> {
         if step > 1 && task.request.range.is_none() {
             task.range = None; // a coarse pass does not settle the range
         }
-        let done = step == 1 && film.samples() >= task.request.max_samples;
+        let done = step == 1 && film.is_done(task.request.max_samples);
         let progress = Progress {
             samples: film.samples(),
+            share: rays as f64 / (film.pixels() as f64 * mode.rays_per_pixel()),
             step,
             secs: task.start.elapsed().as_secs_f64(),
             rays_per_sec,
@@ -334,7 +337,7 @@ impl<N: Fn()> Worker<N> {
             }
         }
         // Both calls of each ray together are a little slower than one; occlusion takes a second ray.
-        let weight = if request.job.mode == Mode::Ao { 2.0 } else { 1.0 };
+        let weight = request.job.mode.rays_per_pixel();
         task.ray_secs = weight * start.elapsed().as_secs_f64() / task.counted as f64 / self.pool.threads() as f64;
         let secs_per_pixel = task.ray_secs + self.overhead_secs;
         let pixels = f64::from(request.width) * f64::from(request.height);

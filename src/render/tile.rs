@@ -40,44 +40,23 @@ impl std::fmt::Debug for Job {
 /// Rows of a band: one batch of a few thousand rays.
 const ROWS: usize = 4;
 
-/// A part of a picture: of a pass, a band of rows and those of its columns in which the scene can be seen.
-#[derive(Clone, Debug)]
-struct Part {
-    rows: Range<u32>,
-    columns: Range<u32>,
-    /// Columns of the whole picture.
-    width: u32,
-    sample: u32,
-}
-
-impl Part {
-    /// The column and row of its `i`-th ray.
-    fn pixel(&self, i: usize) -> (u32, u32) {
-        let (i, columns) = (i as u32, self.columns.len() as u32);
-        (self.columns.start + i % columns, self.rows.start + i / columns)
-    }
-
-    /// The places of its rays in a list of pixels that begins with row `first`.
-    fn places(&self, first: u32) -> impl Iterator<Item = usize> {
-        let Self { rows, columns, width, .. } = self.clone();
-        rows.flat_map(move |y| columns.clone().map(move |x| ((y - first) * width + x) as usize))
-    }
-}
+/// Columns and rows of pixels, in order, that get a sample.
+type Pixels = Vec<(u32, u32)>;
 
 impl Job {
     /// The camera rays of a sample, row by row.
     pub fn camera_rays(&self, width: u32, height: u32, rows: Range<u32>, sample: u32) -> Vec<Ray> {
-        self.rays_of(&Part { rows, columns: 0..width, width, sample }, height)
+        self.rays_of(rows.flat_map(|y| (0..width).map(move |x| (x, y))), [width, height], sample)
     }
 
-    fn rays_of(&self, part: &Part, height: u32) -> Vec<Ray> {
+    fn rays_of(&self, pixels: impl Iterator<Item = (u32, u32)>, [width, height]: [u32; 2], sample: u32) -> Vec<Ray> {
         let frame = self.camera.frame();
-        let size = Vec2::new(part.width as f32, height as f32);
-        let ray = |x: u32, y: u32| {
-            let at = Vec2::new(x as f32, y as f32) + in_pixel(x, y, part.sample);
+        let size = Vec2::new(width as f32, height as f32);
+        let ray = |(x, y): (u32, u32)| {
+            let at = Vec2::new(x as f32, y as f32) + in_pixel(x, y, sample);
             self.camera.ray(&frame, on_screen(at, size), size.x / size.y)
         };
-        part.rows.clone().flat_map(|y| part.columns.clone().map(move |x| (x, y))).map(|(x, y)| ray(x, y)).collect()
+        pixels.map(ray).collect()
     }
 
     /// Columns and rows outside of which no ray meets the scene's bounds. What a structure does with a ray is shown for all
@@ -97,31 +76,42 @@ impl Job {
         [span(low.x, high.x, width), span(-high.y, -low.y, height)]
     }
 
-    /// Adds one sample to every pixel, and returns the number of rays traced: none for pixels that cannot see the scene.
+    /// Adds one sample to every pixel, and returns the number of rays traced: none for pixels that cannot see the scene, or
+    /// have converged where the film asks for that ([`Film::converging`]).
     ///
     /// # Errors
     /// [`Cancelled`]; the film then holds a part of the pass and is of no use.
     pub fn pass(&self, film: &mut Film, pool: &Pool, cancel: &Cancel) -> Result<u64, Cancelled> {
         let (width, height, sample) = (film.width(), film.height(), film.samples());
         let [columns, seen] = self.seen(width, height);
+        let converged = pool.run(|| film.converged());
+        let goes_on = |(x, y): &(u32, u32)| converged.as_ref().is_none_or(|converged| !converged[(y * width + x) as usize]);
         let bands: Vec<_> = film.bands_mut(ROWS).into_iter().enumerate().collect();
         let band = |(i, band): (usize, Band<'_>)| {
             let first = (i * ROWS) as u32;
             let rows = first.max(seen.start)..height.min(first + ROWS as u32).min(seen.end);
-            let part = Part { rows, columns: columns.clone(), width, sample };
-            if part.rows.is_empty() || part.columns.is_empty() {
-                return cancel.check().map(|()| 0);
-            }
-            self.band(band, first, &part, height, cancel)
+            let all = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+            let pixels: Pixels = all.filter(goes_on).collect();
+            self.band(band, first, &pixels, [width, height], sample, cancel)
         };
         let rays = pool.run(|| bands.into_par_iter().map(band).try_reduce(|| 0, |a, b| Ok(a + b)))?;
-        film.pass_done();
+        film.pass_done(rays);
         Ok(rays)
     }
 
-    /// Adds a part to a band that begins with row `first`.
-    fn band(&self, (sums, depth): Band<'_>, first: u32, part: &Part, height: u32, cancel: &Cancel) -> Result<u64, Cancelled> {
-        let rays = self.rays_of(part, height);
+    /// Adds a sample to some pixels of a band that begins with row `first`.
+    fn band(
+        &self,
+        band: Band<'_>,
+        first: u32,
+        pixels: &Pixels,
+        [width, height]: [u32; 2],
+        sample: u32,
+        cancel: &Cancel,
+    ) -> Result<u64, Cancelled> {
+        cancel.check()?;
+        let place = |(x, y): &(u32, u32)| ((y - first) * width + x) as usize;
+        let rays = self.rays_of(pixels.iter().copied(), [width, height], sample);
         let mut samples = vec![[0.0; 4]; rays.len()];
         let mut hits = vec![None; rays.len()];
         if self.mode.is_heat() {
@@ -132,20 +122,21 @@ impl Job {
         }
         let mut traced = rays.len() as u64;
         if self.mode == Mode::Ao {
-            let sampler = |i: usize| {
-                let (x, y) = part.pixel(i);
-                Sampler::new(x, y, part.sample)
-            };
+            let sampler = |i: usize| Sampler::new(pixels[i].0, pixels[i].1, sample);
             traced += self.occlude(&rays, &hits, sampler, &mut samples, cancel)?;
         }
-        for (at, sample) in part.places(first).zip(&samples) {
+        let Band { sums, depth, spreads } = band;
+        for (at, sample) in pixels.iter().map(place).zip(&samples) {
             (0..4).for_each(|k| sums[at][k] += sample[k]);
+        }
+        if let Some(spreads) = spreads {
+            pixels.iter().map(place).zip(&samples).for_each(|(at, sample)| spreads[at].add(*sample));
         }
         if let Some(depth) = depth {
             // t is depth along the view: the camera's rays have unit length along it.
             let scale = self.accel.geometry().space().scale();
             let scaled = |hit: &Option<Hit>| hit.map_or(f32::INFINITY, |h| narrow(f64::from(h.t) * scale));
-            part.places(first).zip(&hits).for_each(|(at, hit)| depth[at] = scaled(hit));
+            pixels.iter().map(place).zip(&hits).for_each(|(at, hit)| depth[at] = scaled(hit));
         }
         Ok(traced)
     }

@@ -88,23 +88,25 @@ impl Camera {
     }
 
     /// The part of the picture outside of which rays surely miss a box: its lower left and upper right corner, where
-    /// (-1, -1) and (1, 1) are those of the picture, which it may reach beyond. Everything where the box reaches beside or
-    /// behind the eye; `None` if the box is empty.
+    /// (-1, -1) and (1, 1) are those of the picture, which it may reach beyond. Everything where the box reaches beside
+    /// the eye; `None` if it is empty or behind the eye altogether.
     pub fn window(&self, bounds: &Aabb, aspect: f32) -> Option<[DVec2; 2]> {
         /// What rays and axes lose to rounding, and more: in units of the screen at unit distance, or of its height.
         const SLACK: f64 = 1e-5;
         const EVERYTHING: [DVec2; 2] = [DVec2::NEG_INFINITY, DVec2::INFINITY];
-        if bounds.is_empty() {
-            return None;
-        }
+        /// Depths that are less, over the distance, are beside the eye.
+        const BESIDE: f64 = 1e-3;
         let (frame, half) = (self.frame(), self.half_size(aspect).as_dvec2());
         let [right, up, forward] = [frame.right, frame.up, frame.forward].map(Vec3::as_dvec3);
+        let corners = bounds.corners().map(|corner| corner.as_dvec3() - self.eye.as_dvec3());
+        if bounds.is_empty() || corners.iter().all(|to| to.dot(forward) < -BESIDE * to.length()) {
+            return None;
+        }
         let mut window = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-        for corner in bounds.corners() {
-            let to = corner.as_dvec3() - self.eye.as_dvec3();
+        for to in corners {
             let (aside, depth) = (DVec2::new(to.dot(right), to.dot(up)), to.dot(forward));
             let at = match self.projection {
-                Projection::Perspective { .. } if depth > to.length() * 1e-3 => aside / depth,
+                Projection::Perspective { .. } if depth > BESIDE * to.length() => aside / depth,
                 Projection::Perspective { .. } => return Some(EVERYTHING),
                 // The eye's and the target's digits are those of rays, which start in the plane of the eye.
                 Projection::Orthographic { .. } => aside,

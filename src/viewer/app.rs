@@ -231,7 +231,7 @@ impl eframe::App for App {
         }
         // Progress bars move; everything else wakes the window itself.
         let state = &self.state;
-        let measured = state.measuring.is_some() || state.is_checking();
+        let measured = state.is_measuring() || state.is_checking();
         if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }

@@ -64,7 +64,7 @@ fn paragraph(ui: &mut Ui, text: &str) {
 
 fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let Some(job) = &state.checks.checking else {
-        let possible = state.shown.is_some() && state.building.is_none() && state.measuring.is_none();
+        let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring();
         let button = ui.add_enabled(possible, eframe::egui::Button::new("Check this model"));
         let help = "Look at every triangle, build every structure, and hold the rays of this view, and diffuse ones from what it sees, against exact arithmetic.";
         if button.on_hover_text(help).clicked() {

@@ -17,7 +17,9 @@ pub fn show(ui: &mut Ui, state: &State, ui_secs: Option<f64>, _: &mut Commands) 
             ui.separator();
             ui.label(format::rate(p.rays_per_sec)).on_hover_text("Rays a second in the last pass, shading included.");
             ui.separator();
-            ui.label(RichText::new(if p.done { "done" } else { "tracing" }).color(dim));
+            let doing = if p.done { "done".to_owned() } else { format!("tracing {}", format::percent(p.share)) };
+            let help = "The share of the picture that still gets samples: the rest cannot see the scene, or has converged.";
+            ui.label(RichText::new(doing).color(dim)).on_hover_text(help);
             ui.separator();
         }
         if let Some(secs) = ui_secs {

@@ -32,7 +32,7 @@ impl State {
             }
             Outcome::Died => self.fail(format!("Can't open {name}: the loader failed. Please report this file.")),
         }
-        self.loading = None;
+        self.stay();
     }
 
     fn opened(&mut self, name: &str, model: Model) {
@@ -42,7 +42,7 @@ impl State {
         let spec = self.first_camera.take();
         self.camera = CameraSpec::or_first(spec.as_ref(), &model.scene, &model.geometry, self.aspect());
         self.framed = spec.is_none().then_some((self.camera, self.size_px));
-        if let Some(camera) = self.reopened.take() {
+        if let Some((camera, _)) = self.reopened.take() {
             (self.camera, self.framed) = (camera, None);
         }
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
@@ -114,7 +114,7 @@ impl State {
     fn count(&mut self) {
         let Some(shown) = &self.shown else { return };
         let wanted = shown.stats.is_none() && self.counted.as_ref() != Some(&shown.key);
-        if wanted && self.seen.as_ref() == Some(&shown.key) && self.measuring.is_none() {
+        if wanted && self.seen.as_ref() == Some(&shown.key) && !self.is_measuring() {
             self.counted = Some(shown.key.clone());
             self.counting = workers::count(&self.shared, shown).ok();
         }
@@ -123,7 +123,7 @@ impl State {
     /// Works out what is predicted of rays in the shown structure, once its figures are there.
     pub(super) fn predict(&mut self) {
         let Some(shown) = self.shown.as_ref().filter(|shown| self.awaits_prediction(shown)) else { return };
-        if let (Some(stats), None) = (&shown.stats, &self.measuring) {
+        if let (Some(stats), false) = (&shown.stats, self.is_measuring()) {
             self.predicted = Some(shown.key.clone());
             self.predicting = workers::predict(&self.shared, shown, Arc::clone(stats)).ok();
         }
@@ -166,7 +166,7 @@ impl State {
             None => {
                 if let (Some(model), false, true) = (&self.model, self.textures_are_there, self.seen.is_some())
                     && !model.scene.images.is_empty()
-                    && self.measuring.is_none()
+                    && !self.is_measuring()
                 {
                     self.decoding = workers::decode(&self.shared, Arc::clone(&model.scene)).ok();
                 }
@@ -201,7 +201,7 @@ impl State {
                 let selected = self.picked.as_ref().and_then(Picked::selected).copied();
                 if let (Some(cell), Some(shown)) = (selected, &self.shown)
                     && self.curves.as_ref().is_none_or(|c| c.0 != cell.id)
-                    && self.measuring.is_none()
+                    && !self.is_measuring()
                 {
                     let weights = SahWeights::of(&shown.key.params);
                     let job = workers::curves(&self.shared, Arc::clone(&shown.accel), cell, weights);

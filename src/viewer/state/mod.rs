@@ -101,8 +101,8 @@ pub struct State {
     pub needing: Option<Needing>,
     /// What becomes of the instances of models that are opened.
     pub instances: Instances,
-    /// The view to go on with when the same model was opened anew.
-    reopened: Option<Camera>,
+    /// The view to go on with when the same model was opened anew, and what became of instances before.
+    reopened: Option<(Camera, Instances)>,
     /// Keeps the renderer at rest while nobody sees the window.
     hidden: Option<Pause>,
     /// Bytes of memory that the machine has.
@@ -243,12 +243,12 @@ impl State {
 
     /// Whether work that must not be disturbed runs.
     pub fn is_measuring(&self) -> bool {
-        self.measuring.is_some()
+        self.measuring.is_some() || self.needing.is_some()
     }
 
-    /// Whether the lab runs, the model is checked, or what it needs is measured, which would disturb a measurement.
+    /// Whether the lab runs or the model is checked, which would disturb a measurement.
     pub fn is_checking(&self) -> bool {
-        self.checks.running.is_some() || self.checks.checking.is_some() || self.needing.is_some()
+        self.checks.running.is_some() || self.checks.checking.is_some()
     }
 
     /// Width over height of the viewport.
@@ -268,7 +268,7 @@ impl State {
         let drawing = self.shown.is_some() && !(self.picture.as_ref().is_some_and(at_rest) && self.overlay_is_current);
         self.loading.is_some()
             || self.building.is_some()
-            || self.measuring.is_some()
+            || self.is_measuring()
             || self.counting.is_some()
             || self.predicting.is_some()
             || drawing
@@ -283,7 +283,7 @@ impl State {
             Command::Open(model) => self.open(model),
             Command::OpenDialog => self.ask_for_file(),
             Command::AskForPath(open) => self.asking = open.then(String::new),
-            Command::CancelLoad => self.loading = None,
+            Command::CancelLoad => self.stay(),
             Command::CancelBuild => self.cancel_build(),
             Command::CancelMeasure => self.measuring = None,
             Command::Structure(id) => {
@@ -396,7 +396,7 @@ impl State {
         self.error = None;
         self.checks.checking = None;
         self.generation += 1;
-        self.reopened = None;
+        self.stay();
         match workers::load(&self.shared, model.clone(), self.generation, self.instances) {
             Ok(job) => self.loading = Some((model, job)),
             Err(e) => self.fail(format!("Can't open {model}: {e}.")),
@@ -405,10 +405,19 @@ impl State {
 
     /// Opens the same model with its instances kept or flattened.
     fn reopen(&mut self, instances: Instances) {
-        self.instances = instances;
         if let Some(name) = self.model.as_ref().map(|model| model.scene.name.clone()) {
+            self.stay();
+            let before = std::mem::replace(&mut self.instances, instances);
             self.open(name);
-            self.reopened = Some(self.camera);
+            self.reopened = Some((self.camera, before));
+        }
+    }
+
+    /// The model that was to be opened is not.
+    fn stay(&mut self) {
+        self.loading = None;
+        if let Some((_, before)) = self.reopened.take() {
+            self.instances = before;
         }
     }
 
@@ -531,7 +540,7 @@ impl State {
     }
 
     fn measure(&mut self) {
-        if self.is_checking() {
+        if self.is_checking() || self.is_measuring() {
             return;
         }
         let Some(plan) = self.plan() else { return };

@@ -111,7 +111,7 @@ impl State {
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
         self.overlay_is_current = current;
         let seen = self.seen.as_ref() == Some(&shown.key);
-        if current || !seen || self.collecting.is_some() || self.measuring.is_some() {
+        if current || !seen || self.collecting.is_some() || self.is_measuring() {
             return;
         }
         if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), wanted.clone()) {
