@@ -81,16 +81,24 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     print(&text(args, &still, times, memory))
 }
 
-/// `1.20 s (read 400 ms, flatten 800 ms)`, without the sum where there is only one.
+/// `read 400 ms, flatten 800 ms`; phases that come several times, as for each mesh, are summed up.
 fn phases(phases: &[Phase]) -> String {
-    let listed = phases.iter().map(|phase| format!("{} {}", phase.name, duration(phase.secs))).collect::<Vec<_>>().join(", ");
+    let mut sums: Vec<Phase> = Vec::new();
+    for phase in phases {
+        match sums.iter_mut().find(|sum| sum.name == phase.name) {
+            Some(sum) => sum.secs += phase.secs,
+            None => sums.push(phase.clone()),
+        }
+    }
+    let listed = sums.iter().map(|phase| format!("{} {}", phase.name, duration(phase.secs))).collect::<Vec<_>>().join(", ");
     if listed.is_empty() { MISSING.to_owned() } else { listed }
 }
 
 /// What triangles and structure take; and the process, at most, until now.
 fn memory(geometry: &Geometry, accel: &dyn Accel) -> String {
     let structure: u64 = accel.memory().iter().map(|part| part.bytes).sum();
-    let each = number(structure as f64 / geometry.stored_live().max(1) as f64);
+    // Of all that are placed: those of one mesh share its bytes.
+    let each = number(structure as f64 / geometry.counts().live.max(1) as f64);
     let whole = (geometry.bytes() + structure) as f64;
     let peak =
         sys::peak_memory_bytes().map(|peak| format!("; the process {} at most, {}", bytes(peak), ratio(peak as f64 / whole)));

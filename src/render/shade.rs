@@ -11,6 +11,7 @@ use crate::scene::{Feature, Geometry, Needs, coverage};
 
 /// The normal towards the viewer, of unit length: of the triangle, or as its vertices have it (`SMOOTH`), which may have
 /// to be turned with the instance (`TURNED`).
+#[inline(always)]
 fn normal<const SMOOTH: bool, const TURNED: bool>(job: &Job, ray: &Ray, hit: &Hit) -> Vec3 {
     let facing = Point::of(job.accel.geometry(), ray, hit).normal;
     let instance = &job.scene.instances[hit.instance as usize];

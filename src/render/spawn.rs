@@ -24,6 +24,7 @@ pub struct Point {
 
 impl Point {
     /// Where `ray` hit the scene.
+    #[inline]
     pub fn of(geometry: &Geometry, ray: &Ray, hit: &Hit) -> Self {
         let [a, b, c] = geometry.corners_of(hit.instance, hit.primitive);
         let at = a + (b - a) * hit.u + (c - a) * hit.v;

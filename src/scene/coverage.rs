@@ -25,6 +25,7 @@ impl<'a> Surface<'a> {
     ///
     /// # Panics
     /// The scene has no such mesh.
+    #[inline]
     pub fn new(scene: &'a Scene, mesh: usize, textures: &'a Textures) -> Self {
         let mesh = &scene.meshes[mesh];
         let material = mesh.material.and_then(|m| scene.materials.get(m)).unwrap_or(&PLAIN);
@@ -87,7 +88,7 @@ impl<'a> Surface<'a> {
 
     /// The linear colour at a point. Where no mesh of the scene has vertex colours, or none an image, these need not be
     /// looked for (`COLORS`, `MAPS`).
-    #[inline]
+    #[inline(always)]
     pub fn color<const COLORS: bool, const MAPS: bool>(&self, triangle: u32, u: f32, v: f32) -> [f32; 3] {
         let corners = || self.mesh.triangles[triangle as usize];
         let [r, g, b, _] = self.material.base_color;

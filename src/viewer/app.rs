@@ -69,7 +69,7 @@ impl App {
 
         let ctx = cc.egui_ctx.clone();
         let budget = options.memory_mib.or(settings.memory_mib).map_or_else(Budget::half_of_machine, Budget::of_mib);
-        let shared = Shared { pool: Pool::new("work", options.threads), budget, wake: Arc::new(move || ctx.request_repaint()) };
+        let shared = Shared::new(Pool::new("work", options.threads), budget, Arc::new(move || ctx.request_repaint()));
         let mut state = State::new(settings, shared, dialog, Graphics::of(cc.wgpu_render_state.as_ref()))?;
         state.first_camera = options.camera;
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));

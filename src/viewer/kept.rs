@@ -79,14 +79,9 @@ impl Kept {
         self.0.iter_mut().filter(|b| b.key == *key).for_each(|b| b.quality = Some(Arc::clone(quality)));
     }
 
-    /// Drops the least recently used but for `shown`; false if there is none.
-    pub fn drop_oldest(&mut self, shown: Option<&Key>) -> bool {
-        let at = self.0.iter().position(|b| Some(&b.key) != shown);
-        at.map(|at| self.0.remove(at)).is_some()
-    }
-
-    /// Drops all.
-    pub fn clear(&mut self) {
-        self.0.clear();
+    /// Takes out the least recently used but for `shown`, if there is one.
+    pub fn take_oldest(&mut self, shown: Option<&Key>) -> Option<Built> {
+        let at = self.0.iter().position(|b| Some(&b.key) != shown)?;
+        Some(self.0.remove(at))
     }
 }

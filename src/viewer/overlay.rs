@@ -40,6 +40,8 @@ pub struct Collected {
 
 /// Boxes smaller than this many pixels are not drawn.
 const LEAST_PX: f32 = 1.0;
+/// So many more than twice as many as are drawn are kept until they are sorted out. Few in tests, so that it happens there.
+const ROOM: usize = if cfg!(test) { 1 << 8 } else { 1 << 16 };
 /// Cells looked at between two looks at the cancel flag.
 const CELLS_PER_CHECK: u64 = 4096;
 
@@ -127,7 +129,7 @@ impl Collector<'_> {
         if self.wants_box(cell) {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found::new(cell, px));
+                self.keep(Found::new(cell, px));
             }
         }
         if let Some(Split::Axis { axis, pos }) = cell.split
@@ -136,7 +138,7 @@ impl Collector<'_> {
         {
             self.total += 1;
             if px >= LEAST_PX {
-                self.found.push(Found { bounds: plane_in(cell.shape.bounds(), axis, pos), plane: true, ..Found::new(cell, px) });
+                self.keep(Found { bounds: plane_in(cell.shape.bounds(), axis, pos), plane: true, ..Found::new(cell, px) });
             }
         }
         let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
@@ -145,6 +147,27 @@ impl Collector<'_> {
             return Descend::No;
         }
         if deeper { Descend::Yes } else { Descend::No }
+    }
+
+    /// Takes it in. Of far more than are drawn only the first are kept: a large grid has millions in view.
+    fn keep(&mut self, found: Found) {
+        self.found.push(found);
+        if self.found.len() >= 2 * self.limit() + ROOM {
+            self.leave_the_first();
+        }
+    }
+
+    fn limit(&self) -> usize {
+        self.wanted.limit.max(1)
+    }
+
+    /// Leaves as many as are drawn.
+    fn leave_the_first(&mut self) {
+        let limit = self.limit();
+        if self.found.len() > limit {
+            self.found.select_nth_unstable_by_key(limit - 1, Found::order);
+            self.found.truncate(limit);
+        }
     }
 
     fn wants_box(&self, cell: &Cell) -> bool {
@@ -170,11 +193,7 @@ impl Collector<'_> {
     /// The largest on the screen, as many as are drawn fluently, of those about as large some from
     /// everywhere; deeper levels over higher ones.
     fn finish(mut self, accel: &dyn Accel) -> Collected {
-        let limit = self.wanted.limit.max(1);
-        if self.found.len() > limit {
-            self.found.select_nth_unstable_by_key(limit - 1, Found::order);
-            self.found.truncate(limit);
-        }
+        self.leave_the_first();
         self.found.sort_by_key(|f| f.depth);
         let depths = self.found.iter().map(|f| f.depth);
         let shown = depths.clone().min().unwrap_or(0)..=depths.max().unwrap_or(0);

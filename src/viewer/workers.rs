@@ -1,8 +1,9 @@
 //! The long work of the window, each piece a background job: loading, building, statistics,
 //! overlays, measuring. At most one of each runs.
 
-use std::sync::Arc;
 use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 
 use super::checks::{RAYS, SEED};
 use super::kept::{Built, Key};
@@ -34,9 +35,30 @@ pub struct Shared {
     pub budget: Budget,
     /// Makes the window draw a frame.
     pub wake: Arc<dyn Fn() + Send + Sync>,
+    /// Threads that give memory back.
+    giving_back: Arc<Mutex<Vec<JoinHandle<()>>>>,
 }
 
 impl Shared {
+    /// Threads, memory, and whom to wake.
+    pub fn new(pool: Pool, budget: Budget, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
+        Self { pool, budget, wake, giving_back: Arc::default() }
+    }
+
+    /// Gives something large back on a thread of its own: to unmap gibibytes takes the system longer than a frame.
+    pub fn give_back(&self, large: impl Send + 'static) {
+        // Without a thread it is done here, as the closure is dropped.
+        if let Ok(thread) = std::thread::Builder::new().name("give back".into()).spawn(move || drop(large)) {
+            self.giving_back.lock().unwrap_or_else(PoisonError::into_inner).push(thread);
+        }
+    }
+
+    /// Waits until all of that is back, so that what follows finds the room. Not for the window's thread.
+    fn wait_for_memory(&self) {
+        let threads = std::mem::take(&mut *self.giving_back.lock().unwrap_or_else(PoisonError::into_inner));
+        threads.into_iter().for_each(|thread| drop(thread.join()));
+    }
+
     fn waker(&self) -> impl FnOnce() + Send + 'static + use<> {
         let wake = Arc::clone(&self.wake);
         move || wake()
@@ -65,9 +87,10 @@ pub struct Building {
 
 /// Starts a build.
 pub fn build(shared: &Shared, key: Key, geometry: Arc<Geometry>) -> std::io::Result<Building> {
-    let (Shared { pool, budget, .. }, wanted) = (shared.clone(), key.clone());
+    let (shared, wanted) = (shared.clone(), key.clone());
     let job = Job::spawn("build", shared.waker(), move |cancel, progress| {
-        let cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
+        shared.wait_for_memory();
+        let cx = BuildCx::new(cancel.clone(), progress.clone(), shared.pool, shared.budget);
         build_now(wanted, &geometry, &cx)
     })?;
     Ok(Building { key, job })
@@ -260,7 +283,7 @@ pub type Stability = Job<Result<(), CheckError>>;
 
 /// Starts the lab: all cases, structures and tests; each case is sent as soon as it is through.
 pub fn stability(shared: &Shared, through: Sender<CaseRow>) -> std::io::Result<Stability> {
-    let Shared { pool, budget, wake } = shared.clone();
+    let Shared { pool, budget, wake, .. } = shared.clone();
     Job::spawn("stability", shared.waker(), move |cancel, progress| {
         let tests = TestKind::ALL.into_iter().chain(TestKind::OTHERS).collect();
         let structures = registry::ALL.iter().collect();

@@ -47,13 +47,13 @@ impl State {
         }
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
         (self.predicting, self.predicted) = (None, None);
-        (self.shown, self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None, None);
+        self.shared.give_back((self.model.take(), self.shown.take(), std::mem::take(&mut self.kept)));
+        (self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None);
         self.picking = None;
         (self.decoding, self.textures_are_there) = (None, false);
         self.select(None);
         (self.seen, self.counted) = (None, None);
         (self.cameras, self.choices) = (History::default(), History::default());
-        self.kept.clear();
         (self.needs, self.needing) = (None, None);
         self.timings = Timings::default();
         self.checks.opened();
@@ -77,7 +77,9 @@ impl State {
                 self.show(built);
             }
             Outcome::Done(Err(BuildError::Cancelled(_))) => {}
-            Outcome::Done(Err(BuildError::Memory { .. })) if self.kept.drop_oldest(self.shown.as_ref().map(|b| &b.key)) => {
+            Outcome::Done(Err(BuildError::Memory { .. }))
+                if self.kept.take_oldest(self.shown.as_ref().map(|b| &b.key)).is_some() =>
+            {
                 self.building = None;
                 return self.choose(); // there is room for it now, or one more can go
             }

@@ -427,7 +427,8 @@ impl State {
         let budget = &self.shared.budget;
         budget.set_limit(mib.map_or_else(Budget::half_of_machine, Budget::of_mib).limit());
         let shown = self.shown.as_ref().map(|built| &built.key);
-        while budget.used() > budget.limit() && self.kept.drop_oldest(shown) {}
+        // Dropped here and now, so that the next one sees what that has brought.
+        while budget.used() > budget.limit() && self.kept.take_oldest(shown).is_some() {}
     }
 
     /// Tells whether anybody can see the window: what nobody sees is not traced.
