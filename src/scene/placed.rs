@@ -208,8 +208,8 @@ struct Boxed {
     max: DVec3,
 }
 
-fn boxes(part: &Geometry, places: &[(u32, DAffine3)], number: u32, cx: &LoadCx) -> Result<Vec<Boxed>, Cancelled> {
-    let extremes = Extremes::new(part);
+fn boxes(part: &Geometry, places: &[(u32, DAffine3)], number: u32, cx: &LoadCx) -> Result<Vec<Boxed>, Reason> {
+    let extremes = Extremes::new(part, cx)?;
     let object_from_part = DAffine3::from_scale(DVec3::splat(1.0 / part.space().scale()));
     let boxed = |(instance, world_from_object): &(u32, DAffine3)| {
         cx.cancel.check()?;
@@ -218,7 +218,8 @@ fn boxes(part: &Geometry, places: &[(u32, DAffine3)], number: u32, cx: &LoadCx) 
         let (min, max) = extremes.bounds(&world_from_part);
         Ok(Boxed { part: number, instance: *instance, world_from_part, min, max })
     };
-    cx.pool.run(|| places.par_iter().map(boxed).collect())
+    let boxes: Result<Vec<Boxed>, Cancelled> = cx.pool.run(|| places.par_iter().map(boxed).collect());
+    Ok(boxes?)
 }
 
 /// How far outside the box around a place a ray may meet it, for being rounded in the part's space.
