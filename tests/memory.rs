@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use boxwood::accel::stats::{SahWeights, Stats};
 use boxwood::accel::{BuildCx, registry, would_fit};
 use boxwood::geometry::tri::TestKind;
 use boxwood::scene::{self, Geometry, LoadCx};
+use boxwood::task::Cancel;
 use peak_alloc::PeakAlloc;
 
 #[global_allocator]
@@ -24,6 +26,18 @@ fn terrain(triangles: usize) -> Arc<Geometry> {
 fn building_takes_no_more_than_it_says() {
     the_wide_bvh_is_built_in_160_bytes_a_triangle();
     what_is_said_to_fit_fits();
+    a_walk_takes_no_memory();
+}
+
+/// A grid's root has a child for each cell.
+fn a_walk_takes_no_memory() {
+    let grid = registry::find("grid").expect("registered");
+    let grid = grid.build(&terrain(400_000), TestKind::Watertight, &grid.defaults(), &BuildCx::unattended(2)).expect("fits");
+    MEMORY.reset_peak_usage();
+    let before = MEMORY.current_usage();
+    let stats = Stats::of(grid.as_ref(), SahWeights::default(), &Cancel::new()).expect("not cancelled");
+    let peak = MEMORY.peak_usage() - before;
+    assert!(stats.leaves > 500_000 && peak < 1 << 20, "{peak} bytes for {} cells", stats.leaves);
 }
 
 fn what_is_said_to_fit_fits() {

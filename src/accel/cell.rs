@@ -206,19 +206,23 @@ pub fn walk(cells: &dyn Cells, visit: &mut dyn FnMut(&Cell) -> ControlFlow<(), D
 
 /// The same below and including one cell.
 pub fn walk_below(cells: &dyn Cells, top: Cell, visit: &mut dyn FnMut(&Cell) -> ControlFlow<(), Descend>) {
-    let mut stack = vec![top];
-    let mut children = Vec::new();
-    while let Some(cell) = stack.pop() {
-        match visit(&cell) {
-            ControlFlow::Break(()) => return,
-            ControlFlow::Continue(Descend::No) => {}
-            ControlFlow::Continue(Descend::Yes) => {
-                cells.children(&cell, &mut |child| {
-                    children.push(child);
-                    ControlFlow::Continue(())
-                });
-                stack.extend(children.drain(..).rev());
-            }
+    let _ = step_into(cells, &top, visit);
+}
+
+/// One cell and what is below it. The children of a cell are not gathered: a grid has millions.
+fn step_into(cells: &dyn Cells, cell: &Cell, visit: &mut dyn FnMut(&Cell) -> ControlFlow<(), Descend>) -> ControlFlow<()> {
+    match visit(cell) {
+        ControlFlow::Break(()) => ControlFlow::Break(()),
+        ControlFlow::Continue(Descend::No) => ControlFlow::Continue(()),
+        ControlFlow::Continue(Descend::Yes) => {
+            let mut onwards = ControlFlow::Continue(());
+            cells.children(cell, &mut |child| {
+                if onwards.is_continue() {
+                    onwards = step_into(cells, &child, visit);
+                }
+                onwards
+            });
+            onwards
         }
     }
 }

@@ -26,7 +26,8 @@ fn normal<const SMOOTH: bool, const TURNED: bool>(job: &Job, ray: &Ray, hit: &Hi
         smooth = cofactors(&instance.world_from_object.matrix3) * smooth;
     }
     let smooth = smooth.try_normalize().unwrap_or(facing);
-    if smooth.dot(ray.dir) > 0.0 { -smooth } else { smooth }
+    // As a factor: which side it is nobody foresees.
+    smooth * if smooth.dot(ray.dir) > 0.0 { -1.0 } else { 1.0 }
 }
 
 /// What normals are turned by: the inverse transpose but for its length and sign, which are settled later, and there for

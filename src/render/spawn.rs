@@ -29,7 +29,7 @@ impl Point {
         let [a, b, c] = geometry.corners_of(hit.instance, hit.primitive);
         let at = a + (b - a) * hit.u + (c - a) * hit.v;
         let normal = (b - a).as_dvec3().cross((c - a).as_dvec3()).try_normalize().map_or(Vec3::Y, |n| n.as_vec3());
-        let normal = if normal.dot(ray.dir) > 0.0 { -normal } else { normal };
+        let normal = normal * if normal.dot(ray.dir) > 0.0 { -1.0 } else { 1.0 };
         // `at` carries some roundings of its terms, the next ray's test some of the triangle's size.
         let reach = a.abs().max(b.abs()).max(c.abs()).max_element() + Aabb::of_triangle(&[a, b, c]).size().max_element();
         Self { at, normal, clearance: ROUNDINGS * UNIT_ROUNDOFF * reach }

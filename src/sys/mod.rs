@@ -1,5 +1,6 @@
 //! What the machine is: its memory, its processor, its files. System calls live here and nowhere else.
 
+mod clock;
 #[cfg(feature = "peers")]
 pub mod embree;
 mod map;
@@ -7,6 +8,7 @@ mod pages;
 #[cfg(all(feature = "peers", target_arch = "x86_64", not(target_env = "msvc")))]
 pub mod tinybvh;
 
+pub use clock::thread_time;
 pub use map::Map;
 pub use pages::{list_in_large_pages, zeros_in_large_pages};
 

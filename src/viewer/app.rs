@@ -2,7 +2,7 @@
 //! out what was asked for; [`eframe::App::ui`] draws the panels, which only read and ask.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::Duration;
 
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, RichText, ScrollArea, Ui, ViewportCommand};
 
@@ -18,6 +18,7 @@ use super::settings::{Settings, ThemeChoice, Workspace};
 use super::state::State;
 use super::theme::{self, Palette};
 use super::workers::Shared;
+use crate::sys::thread_time;
 use crate::task::{Budget, Pool};
 
 /// Where settings are kept in eframe's storage.
@@ -33,8 +34,8 @@ pub struct App {
     commands: Commands,
     screenshot: Option<Screenshot>,
     pace: Pace,
-    /// Seconds that the present frame has taken on this thread, besides having it drawn.
-    own_secs: f64,
+    /// How long this thread has worked for the present frame, besides having it drawn.
+    own_work: Duration,
     /// Grows when the layout is reset: panels forget their sizes with their names.
     layout: u64,
 }
@@ -75,7 +76,7 @@ impl App {
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
         let layout = if options.is_scripted() { SCRIPTED } else { 0 };
-        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), own_secs: 0.0, layout };
+        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), own_work: Duration::ZERO, layout };
         app.follow_settings(&cc.egui_ctx);
         Ok(app)
     }
@@ -106,6 +107,13 @@ impl App {
                 command => self.state.carry_out(command),
             }
             self.follow_settings(ctx);
+        }
+    }
+
+    /// Adds what this thread has worked since then, where the system tells it.
+    fn has_worked(&mut self, since: Option<Duration>) {
+        if let (Some(since), Some(now)) = (since, thread_time()) {
+            self.own_work += now.saturating_sub(since);
         }
     }
 
@@ -214,9 +222,9 @@ fn error(ui: &mut Ui, state: &State, commands: &mut Commands) {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
-        let start = Instant::now();
+        let start = thread_time();
         if !is_repeated(ctx) {
-            self.pace.own_work(std::mem::take(&mut self.own_secs));
+            self.pace.own_work(std::mem::take(&mut self.own_work));
             self.take_dropped(ctx);
             panels::menu::keys(ctx, &self.state, &mut self.commands);
         }
@@ -235,11 +243,11 @@ impl eframe::App for App {
         if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }
-        self.own_secs += (start.elapsed() - self.state.held_on()).as_secs_f64();
+        self.has_worked(start);
     }
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
-        let start = Instant::now();
+        let start = thread_time();
         let ui_secs = frame.info().cpu_usage.map(f64::from);
         if !is_repeated(ui.ctx()) {
             self.pace.frame(ui_secs, &self.state);
@@ -263,7 +271,7 @@ impl eframe::App for App {
         if !self.commands.is_empty() {
             ui.ctx().request_repaint();
         }
-        self.own_secs += start.elapsed().as_secs_f64();
+        self.has_worked(start);
     }
 
     /// A scripted window neither leaves its sizes to the next one nor, under names of its own, takes those of the last.

@@ -1,11 +1,13 @@
 //! How fast the window answers: its longest frame, and how soon a picture follows a click.
 
+use std::time::Duration;
+
 use super::format;
 use super::state::{Answer, State};
 use crate::lab::statistics::median;
 
 /// A frame whose work takes longer is late.
-const LATE_SECS: f64 = 0.016;
+const LATE: Duration = Duration::from_millis(16);
 
 /// What a scripted window says of itself at the end.
 #[derive(Clone, Debug, Default)]
@@ -16,9 +18,9 @@ pub struct Pace {
     longest: f64,
     /// Frames drawn.
     frames: u64,
-    /// The longest time that the window's thread took for a frame besides having it drawn, in seconds.
-    own_longest: f64,
-    /// Frames for which it took longer than a sixtieth of a second.
+    /// The longest that the window's thread worked for a frame besides having it drawn.
+    own_longest: Duration,
+    /// Frames for which it worked longer than [`LATE`].
     own_late: u64,
     /// The first picture of all.
     first: Option<Answer>,
@@ -47,10 +49,11 @@ impl Pace {
         }
     }
 
-    /// Takes note of what a frame took besides being drawn, and without holding on for a picture.
-    pub fn own_work(&mut self, secs: f64) {
-        self.own_longest = self.own_longest.max(secs);
-        self.own_late += u64::from(secs > LATE_SECS);
+    /// Takes note of how long the window's thread worked for a frame besides having it drawn: waiting for a picture, or for
+    /// a processor that others have, is no work.
+    pub fn own_work(&mut self, time: Duration) {
+        self.own_longest = self.own_longest.max(time);
+        self.own_late += u64::from(time > LATE);
     }
 
     /// Takes note of the answer to a change of the camera.
@@ -70,11 +73,11 @@ impl Pace {
         let first = self.first.map(|a| format!("first picture (1/{} resolution) {} later; ", a.step, format::duration(a.secs)));
         let full = self.full.map(|secs| format!("one sample a pixel after {}; ", format::duration(secs)));
         let frames = format!(
-            "longest frame {} while loading or building, {} in all, of {}; of them, besides drawing, {} at most, more than 16 ms in {}{}",
+            "longest frame {} while loading or building, {} in all, of {}; work of the window's thread besides drawing {} at most, more than 16 ms in {}{}",
             format::duration(self.longest_busy),
             format::duration(self.longest),
             format::count(self.frames),
-            format::duration(self.own_longest),
+            format::duration(self.own_longest.as_secs_f64()),
             format::count(self.own_late),
             crate::sys::peak_memory_bytes()
                 .map(|peak| format!("; at most {} of memory", format::bytes(peak)))

@@ -132,8 +132,6 @@ pub struct State {
     renderer: Renderer,
     requested: Option<Asked>,
     requested_at: Instant,
-    /// How long the present frame has held on for a picture.
-    held_on: Duration,
     /// Nodes a ray of the structure shown before, to be compared once the new one is counted.
     before: Option<(&'static str, f64)>,
     generation: u64,
@@ -228,7 +226,6 @@ impl State {
             renderer,
             requested: None,
             requested_at: Instant::now(),
-            held_on: Duration::ZERO,
             before: None,
             generation: 0,
             shared,
@@ -553,7 +550,6 @@ impl State {
 
     /// Takes in what jobs have finished, and starts what follows from it. Called once a frame.
     pub fn advance(&mut self) {
-        self.held_on = Duration::ZERO;
         self.advance_dialog();
         self.advance_load();
         self.advance_build();
@@ -569,11 +565,6 @@ impl State {
         self.advance_prediction();
         self.advance_textures();
         self.refresh_overlay();
-    }
-
-    /// How long the last [`Self::advance`] has held on for a picture, which is no work.
-    pub fn held_on(&self) -> Duration {
-        self.held_on
     }
 
     /// How the shown structure's cells relate.

@@ -47,7 +47,6 @@ impl State {
             self.requested = Some(Asked { number, ..asked });
             self.requested_at = Instant::now();
             self.renderer.wait_for(number, self.graphics.patience());
-            self.held_on = self.requested_at.elapsed();
         }
         if let Some(picture) = self.renderer.picture() {
             self.say_what_changed(&picture);
