@@ -1,6 +1,8 @@
 //! What rays spend their time in, by itself: eight boxes, eight triangles, one triangle and eight rays, each on
 //! every road.
 
+mod common;
+
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -10,8 +12,8 @@ use boxwood::geometry::tri::{Block, Fast, TriTest, Watertight, corners, splat_ow
 use boxwood::geometry::{EightSlabs, Ray};
 use boxwood::scene::{self, Geometry, LoadCx};
 use boxwood::simd::{Kernel, LANES, Road, Simd};
+use common::rays;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use glam::Vec3;
 
 const MODEL: &str = "builtin:soup?triangles=5000";
 
@@ -19,19 +21,6 @@ fn geometry() -> Arc<Geometry> {
     let cx = LoadCx::unattended();
     let scene = scene::open(MODEL, &cx).expect("made in code");
     Arc::new(Geometry::new(&scene, &cx).expect("small"))
-}
-
-/// From all around to the middle, in the world.
-fn rays(geometry: &Geometry) -> Vec<Ray> {
-    let b = geometry.world_bounds();
-    let (centre, size) = (b.centre(), (b.max - b.min).max_element());
-    (0..256u16)
-        .map(|i| {
-            let a = f32::from(i) * 2.399_963;
-            let from = centre + size * Vec3::new(a.cos(), (a * 0.7).sin(), a.sin());
-            Ray::new(from, centre + 0.2 * size * Vec3::new((a * 3.0).sin(), (a * 5.0).cos(), (a * 7.0).sin()) - from)
-        })
-        .collect()
 }
 
 fn blocks(geometry: &Geometry) -> Vec<Block> {

@@ -3,6 +3,8 @@
 //!
 //! Both are run for a few passes and for more, so that what comes before and after the passes is not counted.
 
+mod common;
+
 use std::hint::black_box;
 use std::process::Command;
 use std::sync::Arc;
@@ -13,7 +15,7 @@ use boxwood::geometry::tri::{Block, Eight, TestKind, TriTest, Watertight, corner
 use boxwood::scene::{self, Geometry, LoadCx};
 use boxwood::simd::{LANES, Portable};
 use boxwood::task::Cancel;
-use glam::Vec3;
+use common::rays;
 
 const MODEL: &str = "builtin:soup?triangles=5000";
 const PASSES: [usize; 2] = [2, 12];
@@ -71,19 +73,6 @@ fn pass(way: &str, passes: usize) -> Result<(), Box<dyn std::error::Error>> {
         }
     }
     Ok(())
-}
-
-/// From all around to the middle, in the world.
-fn rays(geometry: &Geometry) -> Vec<Ray> {
-    let b = geometry.world_bounds();
-    let (centre, size) = (b.centre(), (b.max - b.min).max_element());
-    (0..256u16)
-        .map(|i| {
-            let a = f32::from(i) * 2.399_963;
-            let from = centre + size * Vec3::new(a.cos(), (a * 0.7).sin(), a.sin());
-            Ray::new(from, centre + 0.2 * size * Vec3::new((a * 3.0).sin(), (a * 5.0).cos(), (a * 7.0).sin()) - from)
-        })
-        .collect()
 }
 
 /// The loop of `brute` written out: no probe, no query, no tie to ask about in a soup.
