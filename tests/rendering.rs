@@ -28,7 +28,7 @@ fn film(job: &Job, threads: usize) -> Film {
 #[test]
 fn all_structures_give_the_same_picture() {
     for triangles in [soup(400, 0.3, 7), ball(12)] {
-        for mode in [Mode::Shaded, Mode::Normals, Mode::Depth, Mode::Ao] {
+        for mode in [Mode::Shaded, Mode::Path, Mode::Normals, Mode::Depth, Mode::Ao] {
             let expected = film(&job(&triangles, "brute", mode), 1);
             assert!(expected.means().any(|m| m[3] > 0.9) && expected.means().any(|m| m[3] < 0.1), "an edge is in view");
             for entry in registry::ALL {

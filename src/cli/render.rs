@@ -30,7 +30,7 @@ pub struct Args {
     /// The structure to trace through.
     #[arg(long, value_name = "ID", default_value = "bvh")]
     structure: One,
-    /// What is shown: shaded, normals, depth, ao, nodes or prims.
+    /// What is shown: shaded, path, ao, normals, depth, nodes or prims.
     #[arg(long, default_value = "shaded")]
     mode: Mode,
     /// Samples a pixel.

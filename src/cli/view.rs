@@ -17,7 +17,7 @@ pub struct Args {
     /// The structure to show.
     #[arg(long, value_name = "ID")]
     pub structure: Option<One>,
-    /// What is shown: shaded, normals, depth, ao, nodes or prims.
+    /// What is shown: shaded, path, ao, normals, depth, nodes or prims.
     #[arg(long)]
     pub mode: Option<Mode>,
     /// Samples a pixel after which to rest.

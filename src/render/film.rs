@@ -16,8 +16,8 @@ pub struct Film {
     samples: u32,
     /// How sure each pixel is, where those that are get no more samples.
     spreads: Option<Vec<Spread>>,
-    /// No pixel gets more samples.
-    at_rest: bool,
+    /// Pixels that got a sample in the last pass.
+    sampled: usize,
 }
 
 /// What of a film some rows are.
@@ -36,7 +36,7 @@ impl Film {
         let (width, height) = (width.max(1), height.max(1));
         let pixels = width as usize * height as usize;
         let depth = Arc::new(vec![f32::INFINITY; pixels]);
-        Self { width, height, sums: vec![[0.0; 4]; pixels], depth, samples: 0, spreads: None, at_rest: false }
+        Self { width, height, sums: vec![[0.0; 4]; pixels], depth, samples: 0, spreads: None, sampled: pixels }
     }
 
     /// The same, of which pixels that have converged get no more samples.
@@ -60,15 +60,20 @@ impl Film {
         self.samples
     }
 
-    /// Counts a pass as done, in which so many rays were traced.
-    pub(super) const fn pass_done(&mut self, rays: u64) {
+    /// Counts a pass as done, in which so many pixels got a sample.
+    pub(super) const fn pass_done(&mut self, sampled: usize) {
         self.samples += 1;
-        self.at_rest = rays == 0;
+        self.sampled = sampled;
+    }
+
+    /// The share of pixels that got a sample in the last pass: the others cannot see the scene, or have converged.
+    pub fn share(&self) -> f64 {
+        self.sampled as f64 / self.pixels() as f64
     }
 
     /// Whether it has so many samples, or no pixel gets more.
     pub const fn is_done(&self, max_samples: u32) -> bool {
-        self.samples >= max_samples || self.at_rest
+        self.samples >= max_samples || self.sampled == 0
     }
 
     /// For each pixel whether it has converged; `None` if nobody asks, or none can have.

@@ -1,14 +1,15 @@
 //! What surfaces look like besides their shape and plain colour: the scene's textures, and which meshes rays may pass in
 //! places. A scene that has neither pays for neither.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::Mode;
+use super::light::Sources;
 use crate::accel::{self, Accel, Filter, Hit, Traced};
 use crate::geometry::Ray;
 use crate::scene::coverage::{Surface, tested_meshes};
 use crate::scene::texture::Textures;
-use crate::scene::{Feature, Keep, LoadCx, Needs, Scene};
+use crate::scene::{Feature, Geometry, Keep, LoadCx, Needs, Scene};
 use crate::task::{Cancel, Cancelled};
 
 /// The textures of a scene, as far as they are there, and what of its looks it needs.
@@ -18,6 +19,8 @@ pub struct Looks {
     needs: Needs,
     /// By mesh, whether hits on it need the alpha test; empty if none does.
     tested: Vec<bool>,
+    /// Worked out when a path is first followed.
+    sources: OnceLock<Arc<Sources>>,
 }
 
 impl Looks {
@@ -25,13 +28,18 @@ impl Looks {
     pub fn new(scene: &Scene, textures: Textures) -> Self {
         let needs = Needs::of(scene, &textures);
         let tested = if needs.has(Feature::AlphaTest) { tested_meshes(scene, &textures) } else { Vec::new() };
-        Self { needs, textures: Arc::new(textures), tested: if tested.contains(&true) { tested } else { Vec::new() } }
+        Self {
+            needs,
+            textures: Arc::new(textures),
+            tested: if tested.contains(&true) { tested } else { Vec::new() },
+            sources: OnceLock::new(),
+        }
     }
 
     /// Treats every surface as if it needed everything: every hit is asked whether it counts, every shading looks for
     /// normals, colours and images.
     pub fn of_everything(scene: &Scene, textures: Textures) -> Self {
-        Self { needs: Needs::ALL, textures: Arc::new(textures), tested: vec![true; scene.meshes.len()] }
+        Self { needs: Needs::ALL, textures: Arc::new(textures), tested: vec![true; scene.meshes.len()], sources: OnceLock::new() }
     }
 
     /// Decodes the scene's textures; where all is to be kept it treats every surface alike ([`Self::of_everything`]).
@@ -48,7 +56,23 @@ impl Looks {
 
     /// The same with the shading of other needs: for measuring what it costs.
     pub fn with_shading(&self, needs: Needs) -> Self {
-        Self { textures: Arc::clone(&self.textures), needs, tested: self.tested.clone() }
+        Self { textures: Arc::clone(&self.textures), needs, tested: self.tested.clone(), sources: self.sources.clone() }
+    }
+
+    /// The same under other lights than the scene's.
+    pub fn with_sources(self, sources: Sources) -> Self {
+        Self { sources: Arc::new(sources).into(), ..self }
+    }
+
+    /// The lights of the scene. Runs on the threads of the pool that it is called in.
+    pub(super) fn sources(&self, scene: &Scene, geometry: &Geometry, cancel: &Cancel) -> Result<Arc<Sources>, Cancelled> {
+        match self.sources.get() {
+            Some(sources) => Ok(Arc::clone(sources)),
+            None => {
+                let sources = Arc::new(Sources::of(scene, geometry, cancel)?);
+                Ok(Arc::clone(self.sources.get_or_init(|| sources)))
+            }
+        }
     }
 
     /// What the scene needs of its looks.
@@ -87,7 +111,7 @@ impl Looks {
 impl Default for Looks {
     /// Solid surfaces without images, of any scene.
     fn default() -> Self {
-        Self { textures: Arc::default(), needs: Needs::ALL, tested: Vec::new() }
+        Self { textures: Arc::default(), needs: Needs::ALL, tested: Vec::new(), sources: OnceLock::new() }
     }
 }
 
@@ -108,6 +132,6 @@ impl Filter for Holes<'_> {
 impl Mode {
     /// Whether it shows what surfaces look like.
     pub const fn shows_looks(self) -> bool {
-        matches!(self, Self::Shaded | Self::Ao | Self::Normals | Self::Depth)
+        matches!(self, Self::Shaded | Self::Path | Self::Ao | Self::Normals | Self::Depth)
     }
 }

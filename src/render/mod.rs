@@ -4,6 +4,7 @@
 pub mod colormap;
 mod develop;
 mod film;
+pub mod light;
 mod looks;
 mod mode;
 mod picture;

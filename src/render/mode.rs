@@ -13,6 +13,8 @@ pub enum Mode {
     Depth,
     /// How open the surroundings of a point are.
     Ao,
+    /// Light, followed from surface to surface.
+    Path,
     /// Nodes visited by the camera ray.
     Nodes,
     /// Primitives tested by the camera ray.
@@ -21,7 +23,7 @@ pub enum Mode {
 
 impl Mode {
     /// All of them, in the order of menus.
-    pub const ALL: [Self; 6] = [Self::Shaded, Self::Normals, Self::Depth, Self::Ao, Self::Nodes, Self::Prims];
+    pub const ALL: [Self; 7] = [Self::Shaded, Self::Path, Self::Ao, Self::Normals, Self::Depth, Self::Nodes, Self::Prims];
 
     /// The name used on the command line and in files.
     pub const fn id(self) -> &'static str {
@@ -30,6 +32,7 @@ impl Mode {
             Self::Normals => "normals",
             Self::Depth => "depth",
             Self::Ao => "ao",
+            Self::Path => "path",
             Self::Nodes => "nodes",
             Self::Prims => "prims",
         }
@@ -42,6 +45,7 @@ impl Mode {
             Self::Normals => "Normals",
             Self::Depth => "Depth",
             Self::Ao => "Ambient occlusion",
+            Self::Path => "Path traced",
             Self::Nodes => "Nodes visited",
             Self::Prims => "Primitives tested",
         }
@@ -53,6 +57,7 @@ impl Mode {
             Self::Shaded => "Base colour under a headlight and a sky.",
             Self::Normals => "The direction of the surface as a colour: red is x, green is y, blue is z.",
             Self::Depth => "Distance from the camera, near is bright.",
+            Self::Path => "Light from the model's lamps, or from a sky where it has none, followed from surface to surface.",
             Self::Ao => "How much of the sky each point sees: one random ray a sample.",
             Self::Nodes => "How many nodes or cells each camera ray visits in the structure.",
             Self::Prims => "How many triangles each camera ray is tested against.",
@@ -64,9 +69,10 @@ impl Mode {
         matches!(self, Self::Depth | Self::Nodes | Self::Prims)
     }
 
-    /// Rays that a pixel takes for a sample, at most.
+    /// Rays that a pixel takes for a sample, about: what a pass takes is foreseen by it.
     pub const fn rays_per_pixel(self) -> f64 {
         match self {
+            Self::Path => 8.0,
             Self::Ao => 2.0,
             _ => 1.0,
         }

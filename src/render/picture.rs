@@ -38,7 +38,7 @@ pub struct Progress {
     pub step: u32,
     /// Seconds from the request to this picture.
     pub secs: f64,
-    /// Rays of this pass over the most that all pixels could take: the other pixels cannot see the scene, or have converged.
+    /// The share of pixels that got a sample in this pass: the others cannot see the scene, or have converged.
     pub share: f64,
     /// Rays traced a second in this pass, by all threads.
     pub rays_per_sec: f64,

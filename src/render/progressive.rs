@@ -284,7 +284,7 @@ impl<N: Fn()> Worker<N> {
         let done = step == 1 && film.is_done(task.request.max_samples);
         let progress = Progress {
             samples: film.samples(),
-            share: rays as f64 / (film.pixels() as f64 * mode.rays_per_pixel()),
+            share: film.share(),
             step,
             secs: task.start.elapsed().as_secs_f64(),
             rays_per_sec,

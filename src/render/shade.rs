@@ -30,6 +30,11 @@ fn normal<const SMOOTH: bool, const TURNED: bool>(job: &Job, ray: &Ray, hit: &Hi
     smooth * if smooth.dot(ray.dir) > 0.0 { -1.0 } else { 1.0 }
 }
 
+/// The same for a scene of which nothing is known.
+pub(super) fn shading_normal(job: &Job, ray: &Ray, hit: &Hit) -> Vec3 {
+    normal::<true, true>(job, ray, hit)
+}
+
 /// What normals are turned by: the inverse transpose but for its length and sign, which are settled later, and there for
 /// singular matrices too.
 fn cofactors(m: &Mat3A) -> Mat3A {
@@ -54,6 +59,8 @@ pub fn shader(mode: Mode, needs: Needs) -> Shader {
             (true, false) => |job, ray, hit| opaque(normal::<true, false>(job, ray, hit) * 0.5 + 0.5),
             (true, true) => |job, ray, hit| opaque(normal::<true, true>(job, ray, hit) * 0.5 + 0.5),
         },
+        // Light is followed later.
+        Mode::Path => |_, _, _| [0.0; 4],
         Mode::Depth => |_, _, hit| opaque(Vec3::splat(hit.t)),
         Mode::Ao => |_, _, _| opaque(Vec3::ONE),
         Mode::Nodes | Mode::Prims => |_, _, _| opaque(Vec3::ZERO),

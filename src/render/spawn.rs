@@ -15,7 +15,7 @@ const ROUNDINGS: f32 = 16.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     /// On the triangle, in the scaled space.
-    at: Vec3,
+    pub at: Vec3,
     /// Of unit length, towards where the first ray came from.
     pub normal: Vec3,
     /// How far from the triangle's plane a ray has to start so as not to meet it again.
@@ -33,6 +33,11 @@ impl Point {
         // `at` carries some roundings of its terms, the next ray's test some of the triangle's size.
         let reach = a.abs().max(b.abs()).max(c.abs()).max_element() + Aabb::of_triangle(&[a, b, c]).size().max_element();
         Self { at, normal, clearance: ROUNDINGS * UNIT_ROUNDOFF * reach }
+    }
+
+    /// The same for rays that leave on the other side.
+    pub fn other_side(self) -> Self {
+        Self { normal: -self.normal, ..self }
     }
 
     /// The ray from here along `dir`, in the world; `dir` points away from the surface.

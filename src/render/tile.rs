@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::film::Band;
+use super::light::Sources;
 use super::sampler::{Sampler, in_pixel, on_screen};
 use super::shade::{occlusion_ray, shader};
 use super::{Film, Looks, Mode};
@@ -85,6 +86,10 @@ impl Job {
         let (width, height, sample) = (film.width(), film.height(), film.samples());
         let [columns, seen] = self.seen(width, height);
         let converged = pool.run(|| film.converged());
+        let sources = match self.mode {
+            Mode::Path => Some(pool.run(|| self.looks.sources(&self.scene, self.accel.geometry(), cancel))?),
+            _ => None,
+        };
         let goes_on = |(x, y): &(u32, u32)| converged.as_ref().is_none_or(|converged| !converged[(y * width + x) as usize]);
         let bands: Vec<_> = film.bands_mut(ROWS).into_iter().enumerate().collect();
         let band = |(i, band): (usize, Band<'_>)| {
@@ -92,10 +97,12 @@ impl Job {
             let rows = first.max(seen.start)..height.min(first + ROWS as u32).min(seen.end);
             let all = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
             let pixels: Pixels = all.filter(goes_on).collect();
-            self.band(band, first, &pixels, [width, height], sample, cancel)
+            let rays = self.band(band, first, (&pixels, sources.as_deref()), [width, height], sample, cancel)?;
+            Ok((rays, pixels.len()))
         };
-        let rays = pool.run(|| bands.into_par_iter().map(band).try_reduce(|| 0, |a, b| Ok(a + b)))?;
-        film.pass_done(rays);
+        let sum = |a: (u64, usize), b: (u64, usize)| Ok((a.0 + b.0, a.1 + b.1));
+        let (rays, sampled) = pool.run(|| bands.into_par_iter().map(band).try_reduce(|| (0, 0), sum))?;
+        film.pass_done(sampled);
         Ok(rays)
     }
 
@@ -104,7 +111,7 @@ impl Job {
         &self,
         band: Band<'_>,
         first: u32,
-        pixels: &Pixels,
+        (pixels, sources): (&Pixels, Option<&Sources>),
         [width, height]: [u32; 2],
         sample: u32,
         cancel: &Cancel,
@@ -124,6 +131,10 @@ impl Job {
         if self.mode == Mode::Ao {
             let sampler = |i: usize| Sampler::new(pixels[i].0, pixels[i].1, sample);
             traced += self.occlude(&rays, &hits, sampler, &mut samples, cancel)?;
+        }
+        if let Some(sources) = sources {
+            let sampler = |i: usize| Sampler::new(pixels[i].0, pixels[i].1, sample);
+            traced += self.follow(sources, rays.clone(), hits.clone(), sampler, &mut samples, cancel)?;
         }
         let Band { sums, depth, spreads } = band;
         for (at, sample) in pixels.iter().map(place).zip(&samples) {

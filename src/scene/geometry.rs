@@ -249,6 +249,13 @@ impl Geometry {
         placed.parts()[place.part as usize].corners(primitive).map(|p| map.transform_point3(p.as_dvec3()).as_vec3())
     }
 
+    /// How many triangles an instance has; 0 if its transform makes them lines or points.
+    pub fn count_of(&self, instance: u32) -> usize {
+        let placed =
+            || self.placed.as_ref().and_then(|placed| Some(&placed.parts()[placed.of_instance(instance)?.part as usize]));
+        self.owners.count(instance).or_else(|| placed().map(|part| part.triangle_count())).unwrap_or(0)
+    }
+
     /// How many triangles the whole scene has.
     pub fn counts(&self) -> Counts {
         let (triangles, live) = (self.triangles.len() as u64, self.live_count() as u64);

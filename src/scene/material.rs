@@ -2,7 +2,7 @@
 
 use super::texture::{Channel, TextureUse};
 
-/// A material, as far as the shaded mode needs it.
+/// A material: metallic-roughness (glTF 2.0, section 3.9.2), with what light it sends out and lets through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// What the file calls it; may be empty.
@@ -17,6 +17,16 @@ pub struct Material {
     pub alpha_texture: Option<AlphaTexture>,
     /// What opacity does.
     pub alpha: Alpha,
+    /// From 0, a dielectric, to 1, a metal.
+    pub metallic: f32,
+    /// As perceived, from 0, a mirror, to 1.
+    pub roughness: f32,
+    /// The share of light that passes a dielectric straight, as through a thin pane, from 0 to 1.
+    pub transmission: f32,
+    /// The index of refraction, which says how much a dielectric mirrors; 1 for nothing.
+    pub ior: f32,
+    /// Linear radiance that it sends out from both sides.
+    pub emission: [f32; 3],
 }
 
 /// What the opacity of a surface does (glTF 2.0, section 3.9.4).
@@ -52,6 +62,11 @@ impl Material {
         base_color_texture: None,
         alpha_texture: None,
         alpha: Alpha::Opaque,
+        metallic: 0.0,
+        roughness: 1.0,
+        transmission: 0.0,
+        ior: 1.5,
+        emission: [0.0; 3],
     };
 
     /// Whether anything of it is read from an image.

@@ -158,7 +158,8 @@ impl Needs {
                 (Feature::AlphaMaps, alpha_by.is_some()),
                 (Feature::AlphaTest, surface.needs_test() || waits),
                 (Feature::Instancing, places[number] > 1),
-                (Feature::Corners, false),
+                (Feature::Emission, shines(material)),
+                (Feature::Transmission, material.transmission > 0.0),
             ];
             for (feature, _) in used.into_iter().filter(|(_, used)| *used) {
                 needs = needs.with(feature);
@@ -170,6 +171,10 @@ impl Needs {
         }
         needs.with(Feature::Indices)
     }
+}
+
+fn shines(material: &Material) -> bool {
+    material.emission.iter().any(|x| *x > 0.0)
 }
 
 /// How often each mesh stands somewhere.
@@ -309,6 +314,8 @@ struct Facts {
     colors: usize,
     mapped: usize,
     maybe_holes: usize,
+    shining: usize,
+    clear: usize,
     instances: usize,
     repeated: (usize, u64),
     turned: usize,
@@ -327,6 +334,8 @@ impl Facts {
             colors: count(|mesh| !mesh.colors.is_empty()),
             mapped: count(|mesh| !mesh.uvs.is_empty()),
             maybe_holes: placed().filter(|mesh| material_of(scene, mesh).alpha != super::Alpha::Opaque).count(),
+            shining: placed().filter(|mesh| shines(material_of(scene, mesh))).count(),
+            clear: placed().filter(|mesh| material_of(scene, mesh).transmission > 0.0).count(),
             instances: scene.instances.len(),
             repeated: (many().count(), many().map(|places| u64::from(*places)).sum()),
             turned: scene.instances.iter().filter(|i| i.world_from_object != Affine3A::IDENTITY).count(),
@@ -359,8 +368,10 @@ impl Facts {
                 of_meshes(self.maybe_holes, "Some could have holes, but their opacity is 1 everywhere")
             }
             (Feature::AlphaTest, false) => "All surfaces are solid: every hit counts.".into(),
-            (Feature::Emission, _) => "No mode shows light that surfaces send out, so it is not read.".into(),
-            (Feature::Transmission, _) => "No mode shows light that passes surfaces, so it is not read.".into(),
+            (Feature::Emission, true) => of_meshes(self.shining, "Paths of light begin at surfaces that shine"),
+            (Feature::Emission, false) => "No surface shines: paths of light begin at a sky.".into(),
+            (Feature::Transmission, true) => of_meshes(self.clear, "Surfaces let paths of light through"),
+            (Feature::Transmission, false) => "No surface lets light through.".into(),
             (Feature::DoubleSided, _) => "Rays hit both sides of every triangle, and both are shaded alike.".into(),
             (Feature::Instancing, true) => {
                 let (meshes, times) = self.repeated;

@@ -46,12 +46,23 @@ impl Owners {
     /// The flattened index of a triangle of an instance; `None` if that was not flattened.
     #[inline]
     pub fn flat(&self, instance: u32, primitive: u32) -> Option<PrimRef> {
-        // Where all were flattened it stands at its own number.
-        let at = match self.starts.get(instance as usize) {
-            Some(start) if start.instance == instance => instance as usize,
-            _ => self.starts.binary_search_by_key(&instance, |start| start.instance).ok()?,
-        };
-        Some(self.starts[at].first + primitive)
+        Some(self.starts[self.at(instance)?].first + primitive)
+    }
+
+    /// How many triangles an instance has; `None` if it was not flattened.
+    pub fn count(&self, instance: u32) -> Option<usize> {
+        let at = self.at(instance)?;
+        Some((self.starts[at + 1].first - self.starts[at].first) as usize)
+    }
+
+    #[inline]
+    fn at(&self, instance: u32) -> Option<usize> {
+        // Where all were flattened it stands at its own number. The last entry is nobody's.
+        let starts = &self.starts[..self.starts.len() - 1];
+        match starts.get(instance as usize) {
+            Some(start) if start.instance == instance => Some(instance as usize),
+            _ => starts.binary_search_by_key(&instance, |start| start.instance).ok(),
+        }
     }
 
     pub fn bytes(&self) -> u64 {
@@ -93,6 +104,7 @@ mod tests {
             assert_eq!(owners.whose().locate(prim), (instance, primitive));
             assert_eq!(owners.flat(instance, primitive), Some(prim));
         }
+        assert!(counts.iter().all(|(i, n)| owners.count(*i) == Some(*n)) && owners.count(1).is_none());
         assert_eq!((owners.flat(1, 0), owners.flat(10, 0)), (None, None));
         assert_eq!(Owners::new(std::iter::empty()).flat(0, 0), None);
     }

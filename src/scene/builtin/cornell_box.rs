@@ -48,10 +48,15 @@ static SURFACES: [Surface; 4] = [
     Surface { name: "green", color: [0.105, 0.378, 0.076, 1.0], quads: &[
         [[0, 0, 5592], [0, 0, 0], [0, 5488, 0], [0, 5488, 5592]],
     ] },
-    Surface { name: "light", color: [1.0, 0.93, 0.78, 1.0], quads: &[
+    Surface { name: LIGHT, color: [1.0, 0.93, 0.78, 1.0], quads: &[
         [[3430, 5488, 2270], [3430, 5488, 3320], [2130, 5488, 3320], [2130, 5488, 2270]],
     ] },
 ];
+
+/// The surface that shines.
+const LIGHT: &str = "light";
+/// What it sends out, as it is usually rendered: its measured spectrum, brought to red, green and blue.
+const RADIANCE: [f32; 3] = [17.0, 12.0, 4.0];
 
 const TENTHS_PER_METRE: f64 = 10_000.0;
 
@@ -98,7 +103,8 @@ impl Surface {
     }
 
     fn material(&self) -> Material {
-        Material { name: self.name.into(), base_color: self.color, ..Material::PLAIN }
+        let emission = if self.name == LIGHT { RADIANCE } else { [0.0; 3] };
+        Material { name: self.name.into(), base_color: self.color, emission, ..Material::PLAIN }
     }
 }
 

@@ -1,9 +1,10 @@
-//! glTF materials, as far as the shaded mode needs them.
+//! glTF materials.
 
 use gltf::json::material::{AlphaMode, Material as Json};
 use gltf::json::{Root, validation::Checked};
 
 use super::textures;
+use crate::scene::load::unit;
 use crate::scene::texture::Channel;
 use crate::scene::{Alpha, AlphaTexture, Material};
 
@@ -18,6 +19,16 @@ fn material(root: &Root, json: &Json) -> Material {
     let [r, g, b, a] = glossy.map_or(json.pbr_metallic_roughness.base_color_factor.0, |glossy| glossy.diffuse_factor.0);
     let (texture, alpha) = (textures::base_color(root, json), alpha(json));
     let seen_through = alpha != Alpha::Opaque;
+    let extensions = json.extensions.as_ref();
+    // Glossiness is smoothness; what is specular there is left to the index of refraction.
+    let (metallic, roughness) = match glossy {
+        Some(glossy) => (0.0, 1.0 - glossy.glossiness_factor.0),
+        None => (json.pbr_metallic_roughness.metallic_factor.0, json.pbr_metallic_roughness.roughness_factor.0),
+    };
+    let transmission = extensions.and_then(|e| e.transmission.as_ref()).map_or(0.0, |t| t.transmission_factor.0);
+    let strength = extensions.and_then(|e| e.emissive_strength.as_ref()).map_or(1.0, |e| e.emissive_strength.0);
+    let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(Material::PLAIN.ior, |e| e.ior.0);
+    let emission = json.emissive_factor.0.map(|x| if (x * strength).is_finite() { (x * strength).max(0.0) } else { 0.0 });
     Material {
         name: json.name.clone().unwrap_or_default(),
         base_color: [r, g, b, if seen_through { a } else { 1.0 }],
@@ -25,6 +36,11 @@ fn material(root: &Root, json: &Json) -> Material {
         base_color_texture: texture,
         alpha_texture: texture.filter(|_| seen_through).map(|texture| AlphaTexture { texture, channel: Channel::Alpha }),
         alpha,
+        metallic: unit(metallic),
+        roughness: unit(roughness),
+        transmission: unit(transmission),
+        ior: if ior.is_finite() { ior.max(1.0) } else { Material::PLAIN.ior },
+        emission,
     }
 }
 

@@ -11,11 +11,22 @@ pub(super) struct Draft {
     pub material: Material,
     color_said: bool,
     opacity_said: bool,
+    roughness_said: bool,
+    /// Phong's exponent.
+    shininess: Option<f32>,
+    is_shiny: bool,
 }
 
 impl Draft {
     pub fn new(name: String) -> Self {
-        Self { material: Material { name, ..Material::PLAIN }, color_said: false, opacity_said: false }
+        Self {
+            material: Material { name, ..Material::PLAIN },
+            color_said: false,
+            opacity_said: false,
+            roughness_said: false,
+            shininess: None,
+            is_shiny: false,
+        }
     }
 
     /// Takes a statement that names no image.
@@ -36,6 +47,18 @@ impl Draft {
                     (*a, self.opacity_said) = (unit(opacity), true);
                 }
             }
+            b"Ke" => {
+                if let Some(red) = number(0) {
+                    let rgb = [red, number(1).unwrap_or(red), number(2).unwrap_or(red)];
+                    self.material.emission = rgb.map(|x| x.max(0.0));
+                }
+            }
+            b"Ni" => self.material.ior = number(0).filter(|n| *n >= 1.0).unwrap_or(self.material.ior),
+            // The extension for physically based materials.
+            b"Pm" => self.material.metallic = number(0).map_or(self.material.metallic, unit),
+            b"Pr" => (self.material.roughness, self.roughness_said) = (number(0).map_or(1.0, unit), true),
+            b"Ns" if !self.roughness_said => self.shininess = number(0).filter(|n| *n >= 0.0),
+            b"Ks" => self.is_shiny = (0..3).filter_map(number).any(|x| x > 0.0),
             // Where both stand, `d` is the one of the format.
             b"Tr" if !self.opacity_said => *a = number(0).map_or(*a, |t| 1.0 - unit(t)),
             _ => {}
@@ -45,6 +68,10 @@ impl Draft {
     /// The material, once all that is said of it is known.
     pub fn finish(self) -> Material {
         let Self { mut material, color_said, .. } = self;
+        // Facets as wide as Phong's highlight (Walter et al. 2007, section 5.1), as perceived.
+        if let Some(shininess) = self.shininess.filter(|_| self.is_shiny && !self.roughness_said) {
+            material.roughness = (2.0 / (shininess + 2.0)).sqrt().sqrt();
+        }
         let [r, g, b, a] = &mut material.base_color;
         // `map_Kd` is multiplied by `Kd`. Black is written by programs that mean the image alone,
         // and would make it pointless.
