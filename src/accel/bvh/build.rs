@@ -180,7 +180,7 @@ pub fn over_boxes(boxes: &[Aabb], cx: &BuildCx) -> Result<Draft, BuildError> {
     let binned = Binned { bins: 32, costs: Costs { c_trav: 1.0, c_isect: 1.0 } };
     let limits = Limits { max_leaf: 1, max_depth: MAX_DEPTH };
     let tree = in_place(binned, &mut prims, limits, cx)?;
-    Ok(cx.pool.run(|| tree.joined()))
+    Ok(cx.pool.run(|| tree.joined(&cx.cancel))?)
 }
 
 /// What [`over_boxes`] takes while it works.
@@ -224,7 +224,7 @@ impl Plan {
         }?;
         // Before the nodes exist twice.
         drop(prims);
-        let draft = cx.pool.run(|| tree.joined());
+        let draft = cx.pool.run(|| tree.joined(&cx.cancel))?;
         if !self.needs_leaves() {
             return Ok(draft);
         }

@@ -64,7 +64,7 @@ impl Draft {
         let arranged = cx.pool.run(|| arranger.subtree(0, 0))?;
         // The nodes are to exist no more than twice.
         drop((summaries, self));
-        Ok(cx.pool.run(|| arranged.joined()))
+        Ok(cx.pool.run(|| arranged.joined(&cx.cancel))?)
     }
 }
 
@@ -212,7 +212,8 @@ impl Arranger<'_> {
         let boxed = |prim: PrimRef| PrimBox::new(&Bounds::from(&Aabb::of_triangle(&self.geometry.corners(prim))), prim);
         let mut prims: Vec<PrimBox> = list.refs.drain(first..).map(boxed).collect();
         let limits = Limits { max_depth: self.limits.max_depth - depth, ..self.limits };
-        let built = topdown::build(&InPlace::new(ObjectMedian), Slice::new(&mut prims), limits, self.cx)?.joined();
+        let built =
+            topdown::build(&InPlace::new(ObjectMedian), Slice::new(&mut prims), limits, self.cx)?.joined(&self.cx.cancel)?;
         let by = num::index(list.nodes.len() - 1);
         list.nodes[to] = built.nodes[0].moved(by, num::index(first));
         list.nodes.extend(built.nodes[1..].iter().map(|node| node.moved(by, num::index(first))));

@@ -6,6 +6,7 @@ use super::tree::Node;
 use crate::geometry::{Aabb, num};
 use crate::scene::PrimRef;
 use crate::sys::zeros_in_large_pages;
+use crate::task::{Cancel, Cancelled};
 
 /// A node that is written once its children are.
 pub const PLACE: Node = Node::leaf(&Aabb::EMPTY, 0, 1);
@@ -38,19 +39,24 @@ impl Subtree {
 
     /// Copies the forks and lists into one, on the threads of the pool that it is called on: a node first, then
     /// what is below its left child, then what is below its right one.
-    pub fn joined(self) -> Draft {
+    ///
+    /// # Errors
+    /// [`Cancelled`] if asked to stop.
+    pub fn joined(self, cancel: &Cancel) -> Result<Draft, Cancelled> {
         if let Self::List(list) = self {
-            return list;
+            return Ok(list);
         }
         let (node_count, ref_count) = self.sizes();
         let (mut nodes, mut refs) = (zeros_in_large_pages(node_count), zeros_in_large_pages(ref_count));
         let (root, below) = nodes.split_at_mut(1);
-        self.write(&mut root[0], Room { nodes: below, first_node: 1, refs: &mut refs, first_ref: 0 });
-        Draft { nodes, refs }
+        self.write(&mut root[0], Room { nodes: below, first_node: 1, refs: &mut refs, first_ref: 0 }, cancel);
+        // What was not written then is of no use.
+        cancel.check().map(|()| Draft { nodes, refs })
     }
 
-    fn write(self, root: &mut Node, room: Room<'_>) {
+    fn write(self, root: &mut Node, room: Room<'_>, cancel: &Cancel) {
         match self {
+            _ if cancel.is_cancelled() => {}
             Self::List(list) => {
                 // The root goes to its place, so its list moves by one less.
                 let (by, from) = (num::index(room.first_node - 1), num::index(room.first_ref));
@@ -63,7 +69,7 @@ impl Subtree {
                 *root = Node::inner(&left.bounds().union(right.bounds()), num::index(room.first_node));
                 let ([l, r], rooms) = room.divided(left.sizes());
                 let [left_room, right_room] = rooms;
-                rayon::join(|| left.write(l, left_room), || right.write(r, right_room));
+                rayon::join(|| left.write(l, left_room, cancel), || right.write(r, right_room, cancel));
             }
         }
     }
