@@ -75,14 +75,7 @@ fn cx(keep: Keep) -> LoadCx {
 
 /// A scene as it is kept; where all is kept its instances stay flattened if `flat`, so that hits are the same to the bit.
 fn kept(mut scene: Scene, keep: Keep, flat: bool) -> Kept {
-    if keep == Keep::All {
-        scene.fill_in();
-    }
-    let gather = if flat { Geometry::new } else { Geometry::with_instances };
-    let geometry = Arc::new(gather(&scene, &cx(keep)).expect("fits"));
-    if keep == Keep::Needed {
-        scene.give_up_corners();
-    }
+    let geometry = Arc::new(scene.gather(flat, &cx(keep)).expect("fits"));
     let accel: Arc<dyn Accel> = Arc::from(build(registry::find("bvh").expect("registered"), &geometry, TestKind::Watertight));
     let looks = Arc::new(Looks::decode(&scene, &cx(keep)).expect("not cancelled"));
     assert!(looks.textures().warnings().is_empty(), "{:?}", looks.textures().warnings());

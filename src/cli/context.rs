@@ -54,16 +54,14 @@ impl Context {
 
     fn open(&self, model: &str, args: SceneArgs, whole: bool) -> Result<Model, Failure> {
         let cx = LoadCx { keep: args.keep(), ..self.load_cx() };
-        let gather = if args.flatten { Geometry::new } else { Geometry::with_instances };
         let opened = bar::watch("open", &cx.progress, || {
             let mut scene = scene::open(model, &cx)?;
-            if cx.keep == Keep::All {
-                scene.fill_in();
-            }
-            let geometry = gather(&scene, &cx).map_err(|reason| reason.of(model))?;
-            if !whole && cx.keep == Keep::Needed {
-                scene.give_up_corners();
-            }
+            let geometry = match (whole && cx.keep == Keep::Needed, args.flatten) {
+                (true, true) => Geometry::new(&scene, &cx),
+                (true, false) => Geometry::with_instances(&scene, &cx),
+                (false, flatten) => scene.gather(flatten, &cx),
+            };
+            let geometry = geometry.map_err(|reason| reason.of(model))?;
             Ok::<_, Failure>(Model {
                 scene: Arc::new(scene),
                 geometry: Arc::new(geometry),

@@ -6,7 +6,7 @@ use glam::{Affine3A, Vec2, Vec3};
 
 use super::coverage::Surface;
 use super::texture::{Image, TextureUse, Textures};
-use super::{Material, Mesh, Scene};
+use super::{Geometry, LoadCx, Material, Mesh, Reason, Scene};
 
 /// Something that a scene may use or leave out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -173,18 +173,18 @@ impl Needs {
     }
 }
 
-fn shines(material: &Material) -> bool {
+pub(super) fn shines(material: &Material) -> bool {
     material.emission.iter().any(|x| *x > 0.0)
 }
 
 /// How often each mesh stands somewhere.
-fn places(scene: &Scene) -> Vec<u32> {
+pub(super) fn places(scene: &Scene) -> Vec<u32> {
     let mut places = vec![0; scene.meshes.len()];
     scene.instances.iter().for_each(|i| places[i.mesh] += 1);
     places
 }
 
-fn material_of<'a>(scene: &'a Scene, mesh: &Mesh) -> &'a Material {
+pub(super) fn material_of<'a>(scene: &'a Scene, mesh: &Mesh) -> &'a Material {
     static PLAIN: Material = Material::PLAIN;
     mesh.material.and_then(|m| scene.materials.get(m)).unwrap_or(&PLAIN)
 }
@@ -251,6 +251,22 @@ impl Scene {
         bytes
     }
 
+    /// What structures are built over, with instances kept or every one flattened ([`Geometry::new`]); and of the scene as
+    /// much as is to be kept: everything, filled in, or what is needed, without corners.
+    ///
+    /// # Errors
+    /// As [`Geometry::new`].
+    pub fn gather(&mut self, flatten: bool, cx: &LoadCx) -> Result<Geometry, Reason> {
+        if cx.keep == Keep::All {
+            self.fill_in();
+        }
+        let geometry = if flatten { Geometry::new(self, cx) } else { Geometry::with_instances(self, cx) }?;
+        if cx.keep == Keep::Needed {
+            self.give_up_corners();
+        }
+        Ok(geometry)
+    }
+
     /// Gives up positions, and indices where nothing else of a vertex is looked up by them: once there is a
     /// [`super::Geometry`] it holds them. The scene cannot be flattened again after that.
     pub fn give_up_corners(&mut self) {
@@ -283,110 +299,6 @@ impl Scene {
         self.materials.push(Material::PLAIN);
         for material in &mut self.materials {
             material.base_color_texture.get_or_insert(TextureUse { image: white, ..TextureUse::default() });
-        }
-    }
-}
-
-/// A feature of a scene, and why it is used or left out.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
-    /// Which one.
-    pub feature: Feature,
-    /// Whether the scene uses it.
-    pub used: bool,
-    /// A sentence.
-    pub why: String,
-}
-
-impl Needs {
-    /// Every feature, and why it is used or left out.
-    pub fn findings(self, scene: &Scene) -> Vec<Finding> {
-        let facts = Facts::of(scene);
-        let finding = |feature: Feature| Finding { feature, used: self.has(feature), why: facts.why(feature, self.has(feature)) };
-        Feature::ALL.into_iter().map(finding).collect()
-    }
-}
-
-/// What sentences about a scene need.
-struct Facts {
-    placed: usize,
-    normals: usize,
-    colors: usize,
-    mapped: usize,
-    maybe_holes: usize,
-    shining: usize,
-    clear: usize,
-    instances: usize,
-    repeated: (usize, u64),
-    turned: usize,
-    images: usize,
-}
-
-impl Facts {
-    fn of(scene: &Scene) -> Self {
-        let places = places(scene);
-        let placed = || scene.meshes.iter().zip(&places).filter(|(_, places)| **places > 0).map(|(mesh, _)| mesh);
-        let count = |is: fn(&Mesh) -> bool| placed().filter(|mesh| is(mesh)).count();
-        let many = || places.iter().filter(|places| **places > 1);
-        Self {
-            placed: placed().count(),
-            normals: count(|mesh| !mesh.normals.is_empty()),
-            colors: count(|mesh| !mesh.colors.is_empty()),
-            mapped: count(|mesh| !mesh.uvs.is_empty()),
-            maybe_holes: placed().filter(|mesh| material_of(scene, mesh).alpha != super::Alpha::Opaque).count(),
-            shining: placed().filter(|mesh| shines(material_of(scene, mesh))).count(),
-            clear: placed().filter(|mesh| material_of(scene, mesh).transmission > 0.0).count(),
-            instances: scene.instances.len(),
-            repeated: (many().count(), many().map(|places| u64::from(*places)).sum()),
-            turned: scene.instances.iter().filter(|i| i.world_from_object != Affine3A::IDENTITY).count(),
-            images: scene.images.len(),
-        }
-    }
-
-    fn why(&self, feature: Feature, used: bool) -> String {
-        let (placed, instances) = (self.placed, self.instances);
-        let of_meshes = |n: usize, what: &str| format!("{what}: {n} of {placed} meshes.");
-        match (feature, used) {
-            (Feature::Normals, true) => of_meshes(self.normals, "Shading smooths triangles by the normals of their vertices"),
-            (Feature::Normals, false) => "No mesh has normals: triangles are shaded flat.".into(),
-            (Feature::VertexColors, true) => of_meshes(self.colors, "There are colours at vertices"),
-            (Feature::VertexColors, false) => "No mesh has colours at its vertices, or all are white.".into(),
-            (Feature::Uvs, true) => of_meshes(self.mapped, "Images are looked up by texture coordinates"),
-            (Feature::Uvs, false) => "No material reads an image, so texture coordinates are not kept.".into(),
-            (Feature::ColorMaps, true) => {
-                format!("Surfaces take their colour from images; colour and opacity together need {}.", self.images)
-            }
-            (Feature::ColorMaps, false) => "No surface takes its colour from an image.".into(),
-            (Feature::AlphaMaps, true) => {
-                of_meshes(self.maybe_holes, "Surfaces take their opacity from images, among those that may have holes")
-            }
-            (Feature::AlphaMaps, false) => "No surface takes its opacity from an image.".into(),
-            (Feature::AlphaTest, true) => {
-                of_meshes(self.maybe_holes, "Some may have holes, so that each hit is asked whether it counts")
-            }
-            (Feature::AlphaTest, false) if self.maybe_holes > 0 => {
-                of_meshes(self.maybe_holes, "Some could have holes, but their opacity is 1 everywhere")
-            }
-            (Feature::AlphaTest, false) => "All surfaces are solid: every hit counts.".into(),
-            (Feature::Emission, true) => of_meshes(self.shining, "Paths of light begin at surfaces that shine"),
-            (Feature::Emission, false) => "No surface shines: paths of light begin at a sky.".into(),
-            (Feature::Transmission, true) => of_meshes(self.clear, "Surfaces let paths of light through"),
-            (Feature::Transmission, false) => "No surface lets light through.".into(),
-            (Feature::DoubleSided, _) => "Rays hit both sides of every triangle, and both are shaded alike.".into(),
-            (Feature::Instancing, true) => {
-                let (meshes, times) = self.repeated;
-                format!("Meshes that stand in several places are kept once, below an upper level: {meshes}, in {times} places.")
-            }
-            (Feature::Instancing, false) => "No mesh stands in two places: there is one level.".into(),
-            (Feature::Transforms, true) => {
-                format!("Normals are turned with what is moved or turned: {} of {instances} instances.", self.turned)
-            }
-            (Feature::Transforms, false) if self.turned > 0 => "What is moved or turned has no normals.".into(),
-            (Feature::Transforms, false) => "Everything stands as it was made: normals are right as they are.".into(),
-            (Feature::Indices, _) => "32 bits number all vertices and triangles; what needs more is refused.".into(),
-            (Feature::Corners, _) => "Structures share one copy of positions and indices; the model's own is given up.".into(),
-            (Feature::UnplacedMeshes, _) => "Meshes that stand nowhere are not read.".into(),
-            (Feature::UnusedImages, _) => "Images and channels that no surface reads are not decoded.".into(),
         }
     }
 }

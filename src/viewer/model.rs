@@ -9,7 +9,7 @@ use crate::geometry::{Aabb, Ray};
 use crate::lab::stability::cases;
 use crate::render::Looks;
 use crate::scene::texture::Textures;
-use crate::scene::{self, Finding, Geometry, Keep, LoadCx, LoadError, Reason, Scene};
+use crate::scene::{self, Finding, Geometry, LoadCx, LoadError, Reason, Scene};
 
 /// A model that is open.
 #[derive(Clone, Debug)]
@@ -72,17 +72,8 @@ pub enum Instances {
 pub fn load(model: &str, generation: u64, instances: Instances, cx: &LoadCx) -> Result<Model, LoadError> {
     let start = Instant::now();
     let (mut scene, rays) = case(model).unwrap_or_else(|| Ok((scene::open(model, cx)?, Vec::new())))?;
-    if cx.keep == Keep::All {
-        scene.fill_in();
-    }
-    let gather = match instances {
-        Instances::Kept => Geometry::with_instances,
-        Instances::Flattened => Geometry::new,
-    };
-    let geometry = Arc::new(gather(&scene, cx).map_err(|reason| reason.of(model))?);
-    if cx.keep == Keep::Needed {
-        scene.give_up_corners();
-    }
+    let geometry = scene.gather(instances == Instances::Flattened, cx).map_err(|reason| reason.of(model))?;
+    let geometry = Arc::new(geometry);
     let raster = Arc::new(RasterMesh::new(generation, Arc::clone(&geometry)));
     let looks = Arc::new(Looks::new(&scene, Textures::none()));
     let needs = looks.needs().findings(&scene).into();

@@ -3,7 +3,6 @@
 use std::sync::LazyLock;
 
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 
 use super::microfacet::{self, Roughness};
 
@@ -40,7 +39,9 @@ impl Table {
     fn new() -> Self {
         let at = |k: usize| k as f32 / (NODES - 1) as f32;
         let node = |k: usize| integrate(at(k % NODES).max(LEAST), Roughness::new(at(k / NODES)));
-        let nodes: Vec<Split> = (0..NODES * NODES).into_par_iter().map(node).collect();
+        // By the thread that asks first: one of a pool that waited for others here could be given work that asks again,
+        // and would wait for itself.
+        let nodes: Vec<Split> = (0..NODES * NODES).map(node).collect();
         let mean = |row: &[Split]| {
             let weight = |k: usize| if k == 0 || k == NODES - 1 { 0.5 } else { 1.0 };
             let sum = |of: fn(&Split) -> f32| {
@@ -132,7 +133,8 @@ mod tests {
             for cosine in [0.01, 0.3, 1.0] {
                 assert!((Albedo::of(cosine, roughness).share(1.0) - 1.0).abs() < 1e-5, "a perfect mirror loses nothing");
             }
-            assert!((Albedo::mean(roughness).once() - 1.0).abs() < 0.6);
         }
+        let means = [0.0, 0.3, 0.7, 1.0].map(|roughness| Albedo::mean(roughness).once());
+        assert!((means[0] - 1.0).abs() < 0.01 && means.is_sorted_by(|a, b| a > b), "{means:?}");
     }
 }

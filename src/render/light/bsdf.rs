@@ -52,11 +52,6 @@ fn fresnel(f0: f32, cosine: f32) -> f32 {
 }
 
 impl Bsdf {
-    /// A matt surface.
-    pub const fn matt(base: Vec3) -> Self {
-        Self { base, metallic: 0.0, roughness: 1.0, transmission: 0.0, f0: 0.0 }
-    }
-
     fn shares(&self, to: Vec3) -> Shares {
         let albedo = Albedo::of(to.z, self.roughness);
         let coat = if self.f0 > 0.0 { albedo.share(self.f0) } else { 0.0 };

@@ -78,8 +78,9 @@ impl State {
             }
             Outcome::Done(Err(BuildError::Cancelled(_))) => {}
             Outcome::Done(Err(BuildError::Memory { .. }))
-                if self.kept.take_oldest(self.shown.as_ref().map(|b| &b.key)).is_some() =>
+                if let Some(oldest) = self.kept.take_oldest(self.shown.as_ref().map(|b| &b.key)) =>
             {
+                self.shared.give_back(oldest); // the next build waits for it
                 self.building = None;
                 return self.choose(); // there is room for it now, or one more can go
             }
@@ -228,17 +229,6 @@ impl State {
             Outcome::Died => self.fail("Can't measure: the measurement failed.".to_owned()),
         }
         self.measuring = None;
-    }
-
-    pub(super) fn advance_needs(&mut self) {
-        let Some(job) = &self.needing else { return };
-        match job.poll() {
-            Outcome::Running => return,
-            Outcome::Done(Ok(report)) => self.needs = Some(report),
-            Outcome::Done(Err(why)) => self.fail(format!("Can't measure what is left out: {}", sentence(&why))),
-            Outcome::Died => self.fail("Can't measure what is left out: the measurement failed.".to_owned()),
-        }
-        self.needing = None;
     }
 }
 

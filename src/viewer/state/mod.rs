@@ -4,6 +4,7 @@
 mod checking;
 mod dialog;
 mod finished;
+mod keeping;
 mod refresh;
 
 use std::path::PathBuf;
@@ -34,7 +35,7 @@ use crate::lab::needs::NeedsReport;
 use crate::render::progressive::Pause;
 use crate::render::{self, Mode, Picture, Range, Renderer};
 use crate::scene::{Camera, CameraSpec};
-use crate::task::{Budget, Pool};
+use crate::task::Pool;
 use glam::Vec2;
 
 /// How long the window says what a switch of structures changed.
@@ -400,58 +401,10 @@ impl State {
         }
     }
 
-    /// Opens the same model with its instances kept or flattened.
-    fn reopen(&mut self, instances: Instances) {
-        if let Some(name) = self.model.as_ref().map(|model| model.scene.name.clone()) {
-            self.stay();
-            let before = std::mem::replace(&mut self.instances, instances);
-            self.open(name);
-            self.reopened = Some((self.camera, before));
-        }
-    }
-
-    /// The model that was to be opened is not.
-    fn stay(&mut self) {
-        self.loading = None;
-        if let Some((_, before)) = self.reopened.take() {
-            self.instances = before;
-        }
-    }
-
-    /// Limits the memory; kept structures go until the others fit.
-    fn set_memory(&mut self, mib: Option<u64>) {
-        self.settings.memory_mib = mib;
-        let budget = &self.shared.budget;
-        budget.set_limit(mib.map_or_else(Budget::half_of_machine, Budget::of_mib).limit());
-        let shown = self.shown.as_ref().map(|built| &built.key);
-        // Dropped here and now, so that the next one sees what that has brought.
-        while budget.used() > budget.limit() && self.kept.take_oldest(shown).is_some() {}
-    }
-
     /// Tells whether anybody can see the window: what nobody sees is not traced.
     pub fn hide(&mut self, hidden: bool) {
         if hidden != self.hidden.is_some() {
             self.hidden = hidden.then(|| self.renderer.pause());
-        }
-    }
-
-    /// Bytes that are charged, and the most there may be.
-    pub fn memory(&self) -> (u64, u64) {
-        (self.shared.budget.used(), self.shared.budget.limit())
-    }
-
-    fn measure_needs(&mut self) {
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        if self.is_checking() || self.is_measuring() {
-            return;
-        }
-        /// Columns of the rays that times are taken with.
-        const COLUMNS: u32 = 256;
-        let [width, height] = self.size_px;
-        let size = [COLUMNS, (COLUMNS * height).div_ceil(width.max(1)).clamp(1, COLUMNS * 2)];
-        match workers::needs(&self.shared, (model, shown), (self.camera, size), self.renderer.pause()) {
-            Ok(job) => self.needing = Some(job),
-            Err(e) => self.fail(format!("Can't measure: {e}.")),
         }
     }
 

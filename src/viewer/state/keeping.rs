@@ -1,0 +1,74 @@
+//! What is kept of models and structures: instances or flattened triangles, the memory that all may take, and what leaving out
+//! saves.
+
+use super::State;
+use crate::job::Outcome;
+use crate::viewer::model::Instances;
+use crate::viewer::state::finished::sentence;
+use crate::viewer::workers;
+
+/// Columns of the rays that times of [`crate::lab::needs`] are taken with.
+const COLUMNS: u32 = 256;
+
+impl State {
+    /// Opens the same model with its instances kept or flattened.
+    pub(super) fn reopen(&mut self, instances: Instances) {
+        if let Some(name) = self.model.as_ref().map(|model| model.scene.name.clone()) {
+            self.stay();
+            let before = std::mem::replace(&mut self.instances, instances);
+            self.open(name);
+            self.reopened = Some((self.camera, before));
+        }
+    }
+
+    /// The model that was to be opened is not.
+    pub(super) fn stay(&mut self) {
+        self.loading = None;
+        if let Some((_, before)) = self.reopened.take() {
+            self.instances = before;
+        }
+    }
+
+    /// Limits the memory; kept structures go until the others fit.
+    pub(super) fn set_memory(&mut self, mib: Option<u64>) {
+        self.settings.memory_mib = mib;
+        let limit = mib.map_or(self.machine_bytes / 2, |mib| mib.saturating_mul(1 << 20));
+        self.shared.budget.set_limit(limit);
+        let (mut left, shown) = (self.shared.budget.used(), self.shown.as_ref().map(|built| &built.key));
+        while left > limit
+            && let Some(oldest) = self.kept.take_oldest(shown)
+        {
+            left = left.saturating_sub(oldest.accel.memory().iter().map(|part| part.bytes).sum());
+            self.shared.give_back(oldest);
+        }
+    }
+
+    /// Bytes that are charged, and the most there may be.
+    pub fn memory(&self) -> (u64, u64) {
+        (self.shared.budget.used(), self.shared.budget.limit())
+    }
+
+    pub(super) fn measure_needs(&mut self) {
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
+        if self.is_checking() || self.is_measuring() {
+            return;
+        }
+        let [width, height] = self.size_px;
+        let size = [COLUMNS, (COLUMNS * height).div_ceil(width.max(1)).clamp(1, COLUMNS * 2)];
+        match workers::needs(&self.shared, (model, shown), (self.camera, size), self.renderer.pause()) {
+            Ok(job) => self.needing = Some(job),
+            Err(e) => self.fail(format!("Can't measure: {e}.")),
+        }
+    }
+
+    pub(super) fn advance_needs(&mut self) {
+        let Some(job) = &self.needing else { return };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(report)) => self.needs = Some(report),
+            Outcome::Done(Err(why)) => self.fail(format!("Can't measure what is left out: {}", sentence(&why))),
+            Outcome::Died => self.fail("Can't measure what is left out: the measurement failed.".to_owned()),
+        }
+        self.needing = None;
+    }
+}
