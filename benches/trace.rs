@@ -24,7 +24,7 @@ fn primary_rays(criterion: &mut Criterion) {
     for entry in registry::ALL {
         let built = entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &BuildCx::unattended(0)).expect("fits");
         let accel: Arc<dyn Accel> = Arc::from(built);
-        let job = Job { scene: Arc::clone(&scene), accel: Arc::clone(&accel), camera, mode: Mode::Shaded, looks: Arc::default() };
+        let job = Job::new(Arc::clone(&scene), Arc::clone(&accel), camera, Mode::Shaded, Arc::default());
         let set =
             RaySet::generate(RayKind::Primary, &job, 96, 64, &Pool::new("bench", 1), &Cancel::new()).expect("not cancelled");
         let mut hits = vec![None; set.rays.len()];

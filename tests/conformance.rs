@@ -11,7 +11,7 @@ use boxwood::accel::stats::{SahWeights, Stats};
 use boxwood::accel::{Accel, BuildCx, BuildError, Hit, Mode, Step, cell, validate};
 use boxwood::geometry::Ray;
 use boxwood::geometry::tri::TestKind;
-use boxwood::scene::Geometry;
+use boxwood::lab::rounding_explains;
 use boxwood::task::{Budget, Cancel, Cancelled};
 use common::{Random, ball, build, geometry_of, meet_in_f64, rays_for, scene_of, soup, trace, watch};
 use glam::Vec3;
@@ -28,11 +28,7 @@ fn compare(entry: &Entry, accel: &dyn Accel, brute: &[Option<Hit>], rays: &[Ray]
             continue;
         }
         let hierarchy = accel.layout() == cell::Layout::Hierarchy;
-        let tie = match (hit, expected) {
-            (Some(a), Some(b)) if (a.t - b.t).abs() <= near_tie(ray, b.t, accel.geometry()) => true,
-            // In the plane of a triangle t is noise for either test: rounding moves it anywhere in the triangle.
-            _ => [hit, expected].iter().any(|h| h.is_some_and(|h| grazes(ray, &h, accel.geometry()))),
-        };
+        let tie = rounding_explains(ray, [*hit, *expected], accel.geometry());
         assert!(tie && !hierarchy, "{} on {what}: {ray:?} gives {hit:?}, brute {expected:?}", entry.id);
         near_ties += 1;
     }
@@ -41,24 +37,10 @@ fn compare(entry: &Entry, accel: &dyn Accel, brute: &[Option<Hit>], rays: &[Ray]
     assert_eq!(plain, hits, "{} on {what}: every road gives the same hits", entry.id);
     let any = trace(accel, rays, Mode::Any);
     for ((ray, hit), expected) in rays.iter().zip(&any).zip(brute) {
-        let noise = hit.or(*expected).is_some_and(|h| grazes(ray, &h, accel.geometry()));
-        assert!(hit.is_some() == expected.is_some() || noise, "{} any hit on {what}: {ray:?}", entry.id);
+        let noise = hit.is_some() == expected.is_some() || rounding_explains(ray, [*hit, *expected], accel.geometry());
+        assert!(noise, "{} any hit on {what}: {ray:?}", entry.id);
     }
     near_ties
-}
-
-/// The t by which competing hits may differ and still be called near: the padding of the cells
-/// along the ray.
-fn near_tie(ray: &Ray, t: f32, geometry: &Geometry) -> f32 {
-    let reach = (geometry.world_bounds().max - geometry.world_bounds().min).max_element() + ray.at(t).distance(ray.origin);
-    16.0 * f32::EPSILON * reach / ray.dir.abs().max_element()
-}
-
-/// Whether the ray lies in the plane of the triangle it hits, within the rounding of 32 bits.
-fn grazes(ray: &Ray, hit: &Hit, geometry: &Geometry) -> bool {
-    let [a, b, c] = geometry.corners_of(hit.instance, hit.primitive).map(|p| p.as_dvec3());
-    let (normal, dir) = ((b - a).cross(c - a), ray.dir.as_dvec3());
-    normal.dot(dir).abs() <= 1e-5 * normal.length() * dir.length()
 }
 
 /// Every structure as it comes, and with each choice that it offers: every builder, every switch.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use boxwood::accel::{Accel, registry};
 use boxwood::geometry::tri::TestKind;
 use boxwood::render::light::{Sky, Sources};
-use boxwood::render::{Job, Looks, Mode, render};
+use boxwood::render::{Job, Looks, Mode, Until, render};
 use boxwood::scene::texture::Textures;
 use boxwood::scene::{Camera, Instance, Material, Mesh, Projection, Scene};
 use boxwood::task::{Cancel, Pool, Progress};
@@ -24,14 +24,14 @@ fn job(scene: Scene, camera: Camera, sky: Option<Sky>) -> Job {
     let accel: Arc<dyn Accel> = Arc::from(build(registry::find("bvh").expect("registered"), &geometry, TestKind::Watertight));
     let looks = Looks::new(&scene, Textures::none());
     let looks = if let Some(sky) = sky { looks.with_sources(Sources::sky(sky)) } else { looks };
-    Job { scene: Arc::new(scene), accel, camera, mode: Mode::Path, looks: Arc::new(looks) }
+    Job::new(Arc::new(scene), accel, camera, Mode::Path, Arc::new(looks))
 }
 
 /// The mean of each pixel that is wholly covered.
 fn means(job: &Job, (width, height): (u32, u32), samples: u32) -> Vec<Vec3> {
-    let film =
-        render(job, width, height, samples, &Pool::new("test", 2), &Cancel::new(), &Progress::new()).expect("not cancelled");
-    film.film.means().filter(|mean| mean[3] == 1.0).map(|[r, g, b, _]| Vec3::new(r, g, b)).collect()
+    let (until, pool) = (Until::samples(samples), Pool::new("test", 2));
+    let still = render(job, (width, height), &until, &pool, &Cancel::new(), &Progress::new()).expect("not cancelled");
+    still.film.means().filter(|mean| mean[3] == 1.0).map(|[r, g, b, _]| Vec3::new(r, g, b)).collect()
 }
 
 /// A square, whose rays leave it for good.

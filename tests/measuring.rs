@@ -29,7 +29,7 @@ fn rays(triangles: &[[Vec3; 3]], kind: RayKind, id: &str, threads: usize) -> Ray
     let geometry = geometry_of(&scene);
     let accel: Arc<dyn Accel> = Arc::from(build(registry::find(id).expect("registered"), &geometry, TestKind::Watertight));
     let camera = Camera::framing(geometry.world_bounds(), Vec3::new(1.0, 0.7, 2.0), Vec3::Y, 1.5);
-    let job = Job { scene, accel, camera, mode: render::Mode::Shaded, looks: Arc::default() };
+    let job = Job::new(scene, accel, camera, render::Mode::Shaded, Arc::default());
     RaySet::generate(kind, &job, 90, 61, &Pool::new("test", threads), &Cancel::new()).expect("not cancelled")
 }
 

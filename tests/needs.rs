@@ -7,9 +7,9 @@ use std::sync::Arc;
 use boxwood::accel::{Accel, registry};
 use boxwood::geometry::tri::TestKind;
 use boxwood::lab::needs::{Kept, needs};
-use boxwood::render::{Film, Job, Looks, Mode, render};
-use boxwood::scene::texture::{Channel, Image, ImageSource, TextureUse};
-use boxwood::scene::{Alpha, AlphaTexture, Camera, Feature, Geometry, Instance, Keep, LoadCx, Material, Mesh, Scene};
+use boxwood::render::{Film, Job, Looks, Mode, Until, render};
+use boxwood::scene::texture::{Channel, Detail, Image, ImageSource, TextureUse};
+use boxwood::scene::{Alpha, Camera, Feature, Geometry, Instance, Keep, LoadCx, Material, Mesh, Scene, ValueTexture};
 use boxwood::task::{Cancel, Pool, Progress};
 use common::{ball, build, scene_of};
 use glam::{Affine3A, Quat, Vec2, Vec3};
@@ -50,7 +50,7 @@ fn place(mesh: usize, x: f32) -> Instance {
 
 fn textured(alpha: Alpha) -> Material {
     let texture = TextureUse::default();
-    let alpha_texture = Some(AlphaTexture { texture, channel: Channel::Alpha });
+    let alpha_texture = Some(ValueTexture { texture, channel: Channel::Alpha });
     Material { base_color_texture: Some(texture), alpha_texture, alpha, ..Material::PLAIN }
 }
 
@@ -77,7 +77,7 @@ fn cx(keep: Keep) -> LoadCx {
 fn kept(mut scene: Scene, keep: Keep, flat: bool) -> Kept {
     let geometry = Arc::new(scene.gather(flat, &cx(keep)).expect("fits"));
     let accel: Arc<dyn Accel> = Arc::from(build(registry::find("bvh").expect("registered"), &geometry, TestKind::Watertight));
-    let looks = Arc::new(Looks::decode(&scene, &cx(keep)).expect("not cancelled"));
+    let looks = Arc::new(Looks::decode(&scene, Detail::Colors, &cx(keep)).expect("not cancelled"));
     assert!(looks.textures().warnings().is_empty(), "{:?}", looks.textures().warnings());
     Kept { scene: Arc::new(scene), geometry, accel, looks }
 }
@@ -88,8 +88,10 @@ fn camera(kept: &Kept) -> Camera {
 
 fn film(kept: &Kept, mode: Mode) -> Film {
     let Kept { scene, accel, looks, .. } = kept.clone();
-    let job = Job { scene, accel, camera: camera(kept), mode, looks };
-    render(&job, 90, 60, 2, &Pool::new("test", 2), &Cancel::new(), &Progress::new()).expect("not cancelled").film
+    let job = Job::new(scene, accel, camera(kept), mode, looks);
+    render(&job, (90, 60), &Until::samples(2), &Pool::new("test", 2), &Cancel::new(), &Progress::new())
+        .expect("not cancelled")
+        .film
 }
 
 #[test]
@@ -152,7 +154,7 @@ fn a_scene_without_corners_shows_the_same() {
     let whole = {
         let geometry = Arc::new(Geometry::new(&scene, &cx(Keep::Needed)).expect("fits"));
         let accel: Arc<dyn Accel> = Arc::from(build(registry::find("bvh").expect("registered"), &geometry, TestKind::Watertight));
-        let looks = Arc::new(Looks::decode(&scene, &cx(Keep::Needed)).expect("not cancelled"));
+        let looks = Arc::new(Looks::decode(&scene, Detail::Colors, &cx(Keep::Needed)).expect("not cancelled"));
         Kept { scene: Arc::new(scene.clone()), geometry, accel, looks }
     };
     let ours = kept(scene, Keep::Needed, true);

@@ -35,7 +35,7 @@ fn raced(triangles: &[[Vec3; 3]], threads: usize) -> Vec<boxwood::lab::peers::Pe
     let (pool, cancel) = (Pool::new("test", threads), Cancel::new());
     let accel: Arc<dyn boxwood::accel::Accel> = Arc::from(brute);
     let camera = Camera::framing(geometry.world_bounds(), Vec3::new(1.0, 0.7, 2.0), Vec3::Y, 1.5);
-    let job = Job { scene, accel: Arc::clone(&accel), camera, mode: render::Mode::Shaded, looks: Arc::default() };
+    let job = Job::new(scene, Arc::clone(&accel), camera, render::Mode::Shaded, Arc::default());
     let kinds = [RayKind::Primary, RayKind::Diffuse, RayKind::Shuffled, RayKind::Shadow];
     let sets = kinds.map(|kind| {
         let set = RaySet::ordered(kind, PixelOrder::Morton, &job, (61, 43), &pool, &cancel).expect("not cancelled");

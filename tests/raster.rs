@@ -22,7 +22,7 @@ fn job(scene: Scene, camera: impl FnOnce(&Scene, &Geometry) -> Camera) -> Job {
     let entry = registry::find("bvh").expect("registered");
     let accel: Arc<dyn Accel> = Arc::from(build(entry, &geometry, TestKind::Watertight));
     let camera = camera(&scene, &geometry);
-    Job { scene: Arc::new(scene), accel, camera, mode: render::Mode::Shaded, looks: Arc::default() }
+    Job::new(Arc::new(scene), accel, camera, render::Mode::Shaded, Arc::default())
 }
 
 /// A built-in scene from a camera in words, or from its own.

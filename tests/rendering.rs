@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use boxwood::accel::{self, Accel, registry};
 use boxwood::geometry::tri::TestKind;
-use boxwood::render::{Development, Film, Job, Mode, Range, Renderer, Request, render};
+use boxwood::render::{Development, Film, Job, Mode, Range, Renderer, Request, Tone, Until, render};
 use boxwood::scene::{Camera, Projection};
-use boxwood::task::{Cancel, Pool, Progress};
+use boxwood::task::{Budget, Cancel, Pool, Progress};
 use common::{ball, build, geometry_of, scene_of, soup};
 use glam::Vec3;
 
@@ -18,11 +18,13 @@ fn job(triangles: &[[Vec3; 3]], id: &str, mode: Mode) -> Job {
     let geometry = geometry_of(&scene);
     let accel: Arc<dyn Accel> = Arc::from(build(registry::find(id).expect("registered"), &geometry, TestKind::Watertight));
     let camera = Camera::framing(geometry.world_bounds(), Vec3::new(1.0, 0.7, 2.0), Vec3::Y, 1.5);
-    Job { scene: Arc::new(scene), accel, camera, mode, looks: Arc::default() }
+    Job::new(Arc::new(scene), accel, camera, mode, Arc::default())
 }
 
 fn film(job: &Job, threads: usize) -> Film {
-    render(job, 90, 60, 3, &Pool::new("test", threads), &Cancel::new(), &Progress::new()).expect("not cancelled").film
+    render(job, (90, 60), &Until::samples(3), &Pool::new("test", threads), &Cancel::new(), &Progress::new())
+        .expect("not cancelled")
+        .film
 }
 
 #[test]
@@ -67,7 +69,7 @@ fn only_pixels_that_cannot_see_the_scene_are_not_traced() {
                         for (sum, hit) in sums.iter_mut().zip(hits).filter_map(|(sum, hit)| Some((sum, hit?))) {
                             [sum[0], sum[3]] = [sum[0] + hit.t, sum[3] + 1.0];
                         }
-                        traced += job.pass(&mut film, &pool, &Cancel::new()).expect("not cancelled");
+                        traced += job.pass(&mut film, &pool, &Cancel::new()).expect("not cancelled").rays;
                     }
                     let same = film.means().zip(&sums).all(|(mean, sum)| [mean[0], mean[3]] == [sum[0] * 0.5, sum[3] * 0.5]);
                     assert!(same, "{:?}", job.camera);
@@ -98,8 +100,15 @@ fn a_closed_ball_is_lit_without_speckles() {
 #[test]
 fn the_renderer_refines_rests_and_pauses() {
     let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
-    let request =
-        Request { job: job(&soup(400, 0.3, 7), "brute", Mode::Shaded), width: 240, height: 160, max_samples: 3, range: None };
+    let request = Request {
+        job: job(&soup(400, 0.3, 7), "brute", Mode::Shaded),
+        width: 240,
+        height: 160,
+        max_samples: 3,
+        range: None,
+        tone: Tone::default(),
+        keep: None,
+    };
     let wait = |number: u64, samples: u32| {
         let start = Instant::now();
         loop {
@@ -131,6 +140,41 @@ fn the_renderer_refines_rests_and_pauses() {
 }
 
 #[test]
+fn samples_are_kept_when_only_what_becomes_of_them_changes() {
+    let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
+    let budget = Budget::of_mib(64);
+    let (job, keep) = (job(&soup(400, 0.3, 7), "bvh", Mode::Path), Some(budget.clone()));
+    let request = Request { job, width: 80, height: 60, max_samples: 9, range: None, tone: Tone::default(), keep };
+    let wait = |number: u64| {
+        let start = Instant::now();
+        loop {
+            assert!(start.elapsed() < Duration::from_secs(30), "no picture came");
+            match renderer.picture().filter(|p| p.request == number && p.progress.done) {
+                Some(picture) => return picture,
+                None => std::thread::sleep(Duration::from_millis(2)),
+            }
+        }
+    };
+    let first = wait(renderer.request(request.clone()));
+    let samples: Vec<u32> = first.shots.iter().map(|shot| shot.samples).collect();
+    assert_eq!(samples, [1, 2, 4, 8]);
+    assert!(first.shots.iter().all(|shot| shot.light.as_ref().is_some_and(|light| light.len() == 4800)));
+    assert!(first.shots.is_sorted_by(|a, b| a.secs < b.secs) && budget.used() >= 4 * 4800 * 12);
+    // The same samples, exposed otherwise: no new ones, and another picture.
+    let brighter = wait(renderer.request(Request { tone: Tone { exposure: 2.0, ..request.tone }, ..request.clone() }));
+    assert!(Arc::ptr_eq(&first.shots[3], &brighter.shots[3]) && first.rgba != brighter.rgba);
+    // More samples go on from those that are there; others begin anew.
+    let more = wait(renderer.request(Request { max_samples: 16, ..request.clone() }));
+    assert!(Arc::ptr_eq(&first.shots[3], &more.shots[3]) && more.shots.len() == 5);
+    let mut elsewhere = request;
+    elsewhere.job.camera.eye.x += 0.1;
+    elsewhere.keep = Some(Budget::of_mib(0));
+    let other = wait(renderer.request(elsewhere));
+    assert!(!Arc::ptr_eq(&first.shots[0], &other.shots[0]));
+    assert!(other.shots.iter().all(|shot| shot.light.is_none()), "what does not fit the budget is not kept");
+}
+
+#[test]
 fn pixels_that_have_converged_get_no_more_rays_and_look_the_same() {
     for (triangles, mode) in [(ball(12), Mode::Shaded), (soup(60, 0.3, 3), Mode::Shaded), (ball(12), Mode::Ao)] {
         let job = job(&triangles, "bvh", mode);
@@ -138,8 +182,8 @@ fn pixels_that_have_converged_get_no_more_rays_and_look_the_same() {
         let (mut all, mut part) = (Film::new(90, 60), Film::converging(90, 60));
         let (mut rays, mut fewer) = (Vec::new(), Vec::new());
         for _ in 0..200 {
-            rays.push(job.pass(&mut all, &pool, &cancel).expect("not cancelled"));
-            fewer.push(job.pass(&mut part, &pool, &cancel).expect("not cancelled"));
+            rays.push(job.pass(&mut all, &pool, &cancel).expect("not cancelled").rays);
+            fewer.push(job.pass(&mut part, &pool, &cancel).expect("not cancelled").rays);
         }
         assert_eq!(rays[..16], fewer[..16], "so many samples each pixel gets");
         let (last, first) = (fewer[199], fewer[0]);
@@ -147,7 +191,7 @@ fn pixels_that_have_converged_get_no_more_rays_and_look_the_same() {
         if mode == Mode::Shaded {
             assert!(last * 10 < first * 9, "{last} of {first} rays are left");
         }
-        let ranged = Development { mode, range: Range { min: 0.0, max: 1.0 }, background: None };
+        let ranged = Development { mode, range: Range { min: 0.0, max: 1.0 }, tone: Tone::default(), background: None };
         let (all, part) = pool.run(|| (ranged.develop(&all), ranged.develop(&part)));
         let most = all.iter().zip(&part).map(|(a, b)| a.abs_diff(*b)).max();
         assert!(most <= Some(2), "{mode:?}: {most:?} steps");
@@ -158,6 +202,6 @@ fn pixels_that_have_converged_get_no_more_rays_and_look_the_same() {
     job.camera.eye = Vec3::new(0.0, 0.0, 50.0);
     job.camera.target = Vec3::new(0.0, 0.0, 100.0);
     let mut film = Film::converging(30, 20);
-    assert_eq!(job.pass(&mut film, &Pool::new("test", 1), &Cancel::new()), Ok(0));
+    assert_eq!(job.pass(&mut film, &Pool::new("test", 1), &Cancel::new()).map(|work| work.rays), Ok(0));
     assert!(film.is_done(4096));
 }

@@ -135,13 +135,7 @@ fn rays_that_leave_a_surface_neither_meet_it_nor_pass_it() {
                 let accel: Arc<dyn Accel> = Arc::from(common::build(entry, &geometry, test));
                 let what = format!("{} at {scale:e}, {away} away", test.id());
                 let outside = Camera::framing(geometry.world_bounds(), Vec3::new(0.5, 0.4, 1.0), Vec3::Y, 1.0);
-                let mut job = Job {
-                    scene: Arc::clone(&scene),
-                    accel: Arc::clone(&accel),
-                    camera: outside,
-                    mode: Mode::Shaded,
-                    looks: Arc::default(),
-                };
+                let mut job = Job::new(Arc::clone(&scene), Arc::clone(&accel), outside, Mode::Shaded, Arc::default());
                 let rays = generate(&job, RayKind::Diffuse);
                 let met = common::trace(accel.as_ref(), &rays, boxwood::accel::Mode::Closest).iter().flatten().count();
                 assert!(rays.len() > 2000 && met == 0, "{met} of {} rays meet the body that they leave, {what}", rays.len());

@@ -1,8 +1,17 @@
 //! Arguments that several commands take.
 
+use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 
-use crate::scene::{CameraSpec, Keep};
+use crate::geometry::num::narrow;
+use crate::render::light::Surroundings;
+use crate::render::{Curve, Tone, Transport};
+use crate::scene::{CameraSpec, Environment, Keep};
+
+use super::context::Context;
+use super::failure::Failure;
+use super::{bar, output};
 
 /// What is opened, and with how much of the machine.
 #[derive(Debug, clap::Args)]
@@ -61,10 +70,124 @@ pub struct LookArgs {
     pub camera: Option<CameraSpec>,
 }
 
+/// Which numbers samples are made of.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct SeedArgs {
+    /// Another seed makes another picture of the same.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u32,
+}
+
+/// What is around the scene, in mode path.
+#[derive(Clone, Debug, clap::Args)]
+pub struct AroundArgs {
+    /// An image of the surroundings (.hdr, .exr; its middle column looks along -Z, or what is that where another axis is up)
+    /// [default: a clear day where the model has no lights, and else nothing].
+    #[arg(long, value_name = "FILE", conflicts_with = "sun")]
+    pub environment: Option<PathBuf>,
+    /// Turn the image about the axis that is up.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true, requires = "environment", value_parser = degrees)]
+    pub environment_turn: f32,
+    /// How many times as bright the image is.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, requires = "environment", value_parser = positive)]
+    pub environment_strength: f64,
+    /// A clear day, whatever lights the model has, with the sun that high over the horizon and that far round; below it there
+    /// is none.
+    #[arg(long, value_name = "ELEVATION,AZIMUTH", allow_negative_numbers = true)]
+    pub sun: Option<SunAt>,
+}
+
+/// Where the sun is, in degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunAt {
+    elevation: f32,
+    azimuth: f32,
+}
+
+impl FromStr for SunAt {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let both = s.split_once(',').and_then(|(e, a)| Some((degrees(e.trim()).ok()?, degrees(a.trim()).ok()?)));
+        let (elevation, azimuth) = both.ok_or("the sun is at ELEVATION,AZIMUTH, in degrees")?;
+        Ok(Self { elevation, azimuth })
+    }
+}
+
+impl AroundArgs {
+    /// What it comes to. Reads the image; what is wrong with it is told on standard error.
+    pub fn surroundings(&self, cx: &Context) -> Result<Surroundings, Failure> {
+        if let Some(SunAt { elevation, azimuth }) = self.sun {
+            return Ok(Surroundings::Day { elevation: elevation.to_radians(), azimuth: azimuth.to_radians() });
+        }
+        let Some(path) = &self.environment else { return Ok(Surroundings::Usual) };
+        let load_cx = cx.load_cx();
+        let image = bar::watch("environment", &load_cx.progress, || Environment::open(path, &load_cx))?;
+        image.warnings().iter().for_each(|warning| output::warn(&format!("{}: {warning}", path.display())));
+        let (turn, strength) = (self.environment_turn.to_radians(), narrow(self.environment_strength));
+        Ok(Surroundings::Image { image: Arc::new(image), turn, strength })
+    }
+}
+
+fn degrees(text: &str) -> Result<f32, String> {
+    let degrees = text.parse().ok().filter(|degrees: &f32| degrees.abs() <= 3600.0);
+    degrees.ok_or_else(|| "it is not a number of degrees".to_owned())
+}
+
+/// How far light is followed, in mode path.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct TransportArgs {
+    /// Surfaces that a path meets at most; light that comes over more is missing.
+    #[arg(long, value_name = "N", default_value_t = Transport::default().surfaces, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub surfaces: u32,
+    /// Surfaces before a path may end by chance (Russian roulette).
+    #[arg(long, value_name = "N", default_value_t = Transport::default().certain)]
+    pub roulette: u32,
+    /// Cut down light over two and more surfaces that adds more than this to a sample: fewer bright dots, and a picture that
+    /// is darker than it should be. Off unless asked; what it takes is told.
+    #[arg(long, value_name = "LIGHT", value_parser = positive)]
+    pub clamp: Option<f64>,
+}
+
+impl TransportArgs {
+    /// The same for the renderer.
+    pub fn transport(self) -> Transport {
+        Transport { surfaces: self.surfaces, certain: self.roulette, clamp: self.clamp.map(narrow) }
+    }
+}
+
+/// How light becomes colour, in mode path.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct ToneArgs {
+    /// Exposure in stops: each doubles the light.
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: f32,
+    /// What becomes of light that is too bright: plain (white) or filmic (bent as film does).
+    #[arg(long, default_value = "plain")]
+    pub tone: Curve,
+}
+
+impl ToneArgs {
+    /// The same for the renderer.
+    pub const fn tone(self) -> Tone {
+        Tone { exposure: self.exposure, curve: self.tone }
+    }
+}
+
+fn stops(text: &str) -> Result<f32, String> {
+    let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 32.0);
+    stops.ok_or_else(|| "it is not a number of stops from -32 to 32".to_owned())
+}
+
+/// A positive number.
+pub fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "it is not a positive number".to_owned())
+}
+
 /// A positive number of seconds.
 pub fn seconds(text: &str) -> Result<f64, String> {
-    let secs = text.parse().ok().filter(|secs: &f64| *secs > 0.0 && secs.is_finite());
-    secs.ok_or_else(|| "it is not a positive number of seconds".to_owned())
+    positive(text).map_err(|_| "it is not a positive number of seconds".to_owned())
 }
 
 /// A number from 0 to 1.

@@ -194,7 +194,7 @@ impl Race<'_> {
         let size = [self.args.size.width, self.args.size.height];
         let _memory = self.cx.budget.charge(Raster::bytes(size[0], size[1]))?;
         let (scene, accel) = (Arc::clone(&self.model.scene), Arc::clone(finder));
-        let job = Job { scene, accel, camera: self.camera, mode: Mode::Shaded, looks: Arc::default() };
+        let job = Job::new(scene, accel, self.camera, Mode::Shaded, Arc::default());
         Ok(self.watched(set, |options, progress| {
             measure_with_raster(self.contestants, set, &job, size, options, &self.cx.pool, &self.cx.cancel, progress)
         })?)

@@ -11,6 +11,7 @@ use crate::accel::{BuildCx, BuildError};
 use crate::geometry::tri::TestKind;
 use crate::lab::{BuiltRow, MachineFacts, SceneFacts, build_timed};
 use crate::render::Looks;
+use crate::scene::texture::Detail;
 use crate::scene::{self, Geometry, Keep, LoadCx, Scene};
 use crate::task::{Budget, Cancel, Phase, Pool, Progress};
 
@@ -76,9 +77,9 @@ impl Context {
     }
 
     /// Decodes the textures of a model; what cannot be read is told on standard error.
-    pub fn looks(&self, model: &Model) -> Result<Looks, Failure> {
+    pub fn looks(&self, model: &Model, detail: Detail) -> Result<Looks, Failure> {
         let cx = LoadCx { keep: model.keep, ..self.load_cx() };
-        let looks = bar::watch("textures", &cx.progress, || Looks::decode(&model.scene, &cx))?;
+        let looks = bar::watch("textures", &cx.progress, || Looks::decode(&model.scene, detail, &cx))?;
         looks.textures().warnings().iter().for_each(|warning| super::output::warn(&format!("{}: {warning}", model.scene.name)));
         Ok(looks)
     }

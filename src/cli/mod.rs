@@ -8,6 +8,7 @@ mod bar;
 mod check;
 mod compare;
 mod context;
+mod converge;
 mod failure;
 mod hits;
 mod needs;
@@ -63,6 +64,8 @@ enum Command {
     Compare(compare::Args),
     /// Time builds and rays over a model in growing numbers of triangles.
     Scaling(scaling::Args),
+    /// Measure image error against run time: how fast pictures of each structure and sampler converge.
+    Converge(converge::Args),
     /// Time structures beside those of other libraries: Embree, tinybvh, obvhs, parry3d, bvh.
     Peers(peers::Args),
     /// Check every structure and triangle test on scenes that break ray tracers, against exact arithmetic.
@@ -102,6 +105,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Stats(args) => stats::run(&args, cancel),
         Command::Compare(args) => compare::run(&args, cancel),
         Command::Scaling(args) => scaling::run(&args, cancel),
+        Command::Converge(args) => converge::run(&args, cancel),
         Command::Peers(args) => peers::run(&args, cancel),
         Command::Stability(args) => stability::run(&args, cancel),
         Command::Check(args) => check::run(&args, cancel),

@@ -13,6 +13,7 @@ use crate::accel::params::ParamValues;
 use crate::lab::format::{MISSING, bytes, count, number, signed_bytes};
 use crate::lab::needs::{FeatureRow, Kept, NeedsReport, needs};
 use crate::scene::CameraSpec;
+use crate::scene::texture::Detail;
 use crate::task::{Cancel, Progress};
 
 #[derive(Debug, clap::Args)]
@@ -52,7 +53,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 fn kept(args: &Args, params: &ParamValues, scene: SceneArgs, cx: &Context) -> Result<Kept, Failure> {
     let One(entry) = args.structure;
     let model = cx.load_with_instances(&args.model.model, scene)?;
-    let looks = Arc::new(cx.looks(&model)?);
+    let looks = Arc::new(cx.looks(&model, Detail::Colors)?);
     let built = cx.build(entry, &model, args.build.test, params)?;
     Ok(Kept { scene: model.scene, geometry: model.geometry, accel: built.accel, looks })
 }

@@ -1,7 +1,9 @@
-//! Plots as SVG: several curves over logarithmic axes, one panel beside the other.
+//! Plots as SVG and PNG: several curves over logarithmic axes, one panel beside the other.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg;
 
 use crate::accel::registry::{self, Family};
 
@@ -21,13 +23,36 @@ pub struct Panel {
 /// Its name, and a function.
 pub type Guide = (&'static str, fn(f64) -> f64);
 
-/// One structure.
+/// What is measured of one thing.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// The structure's id.
+    /// The id of the structure whose colour it has.
     pub id: String,
-    /// Both coordinates positive; others are left out.
-    pub points: Vec<(f64, f64)>,
+    /// What it is called.
+    pub name: String,
+    /// Whether its line is broken.
+    pub dashed: bool,
+    /// From left to right.
+    pub points: Vec<Dot>,
+}
+
+/// A point of a curve. One that has a coordinate that is not positive is left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dot {
+    /// Where it is.
+    pub at: (f64, f64),
+    /// The least and the most of its first coordinate, if it was measured several times.
+    pub span: Option<(f64, f64)>,
+    /// It is not to be relied on: drawn hollow.
+    pub hollow: bool,
+}
+
+impl Curve {
+    /// Of one structure, called by its id.
+    pub fn of(id: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let points = points.into_iter().map(|at| Dot { at, span: None, hollow: false }).collect();
+        Self { id: id.to_owned(), name: id.to_owned(), dashed: false, points }
+    }
 }
 
 /// Pixels of a panel.
@@ -54,9 +79,26 @@ pub fn log_log(panels: &[Panel]) -> Result<String, Failed> {
     Ok(svg)
 }
 
+/// An SVG picture as PNG, with the text in the window's typeface: nothing of the machine's is used.
+///
+/// # Errors
+/// In words; there is none that a plot from here gives.
+pub fn png_of(svg: &str) -> Result<Vec<u8>, String> {
+    /// Enlarged, so that text is sharp.
+    const SCALE: f32 = 2.0;
+    let mut options = usvg::Options { font_family: "Ubuntu".to_owned(), ..usvg::Options::default() };
+    let fonts = options.fontdb_mut();
+    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    fonts.set_sans_serif_family("Ubuntu");
+    let tree = usvg::Tree::from_str(svg, &options).map_err(|error| error.to_string())?;
+    let size = tree.size().to_int_size().scale_by(SCALE).ok_or("it has no size")?;
+    let mut picture = Pixmap::new(size.width(), size.height()).ok_or("it has no size")?;
+    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut picture.as_mut());
+    picture.encode_png().map_err(|error| error.to_string())
+}
+
 fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), Failed> {
-    let drawable = |p: &(f64, f64)| p.0 > 0.0 && p.1 > 0.0 && p.0.is_finite() && p.1.is_finite();
-    let all: Vec<(f64, f64)> = panel.curves.iter().flat_map(|c| c.points.iter().copied().filter(drawable)).collect();
+    let all: Vec<(f64, f64)> = panel.curves.iter().flat_map(|c| &c.points).filter(|dot| is_drawable(dot)).map(|d| d.at).collect();
     let span = |of: fn(&(f64, f64)) -> f64| {
         let (low, high) = all.iter().map(of).fold((f64::INFINITY, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
         if low < high { low * 0.7..high * 1.4 } else { 0.1..10.0 }
@@ -82,24 +124,76 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
         guide.label(name).legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
     }
     for (i, curve) in panel.curves.iter().enumerate() {
-        let (color, points) = (color_of(&curve.id), curve.points.iter().copied().filter(drawable));
-        // Members of a family have one colour, and differ by how their points are filled.
-        let filled = i % 2 == 0;
-        let dot = move |at: (i32, i32)| Circle::new(at, 4, if filled { color.filled() } else { color.stroke_width(2) });
-        let line = chart.draw_series(LineSeries::new(points.clone(), color.stroke_width(2)))?;
-        let key =
-            move |(x, y)| EmptyElement::at((x, y)) + PathElement::new([(0, 0), (20, 0)], color.stroke_width(2)) + dot((10, 0));
-        line.label(&curve.id).legend(key);
-        chart.draw_series(points.map(|p| EmptyElement::at(p) + dot((0, 0))))?;
+        let mut family: Vec<&str> = Vec::new();
+        for other in panel.curves[..=i].iter().filter(|other| family_of(&other.id) == family_of(&curve.id)) {
+            if !family.contains(&other.id.as_str()) {
+                family.push(&other.id);
+            }
+        }
+        let color = shaded(color_of(&curve.id), family.iter().position(|id| *id == curve.id).unwrap_or(0));
+        let dots: Vec<Dot> = curve.points.iter().copied().filter(is_drawable).collect();
+        let ends = |end: fn((f64, f64)) -> f64| {
+            dots.iter().filter_map(move |dot| Some((dot.span.map(end).filter(|x| *x > 0.0)?.clamp(xs.start, xs.end), dot.at.1)))
+        };
+        let band: Vec<(f64, f64)> =
+            ends(|span| span.0).chain(ends(|span| span.1).collect::<Vec<_>>().into_iter().rev()).collect();
+        if !band.is_empty() {
+            chart.draw_series(std::iter::once(Polygon::new(band, color.mix(0.18))))?;
+        }
+        let (at, style) = (dots.iter().map(|dot| dot.at), color.stroke_width(2));
+        let series = if curve.dashed {
+            chart.draw_series(DashedLineSeries::new(at, 6, 4, style))?
+        } else {
+            chart.draw_series(LineSeries::new(at, style))?
+        };
+        let gap = if curve.dashed { 4 } else { 0 };
+        let key = move |at| {
+            let part = |from: i32, to: i32| PathElement::new([(from, 0), (to, 0)], style);
+            let ends = EmptyElement::at(at) + part(-10, -gap) + part(20 + gap, 30);
+            ends + part(0, 20) + Circle::new((10, 0), 4, color.filled())
+        };
+        series.label(&curve.name).legend(key);
+        let dot = |dot: &Dot| {
+            let inside = if dot.hollow { WHITE.filled() } else { color.filled() };
+            EmptyElement::at(dot.at) + Circle::new((0, 0), 4, inside) + Circle::new((0, 0), 4, color.stroke_width(2))
+        };
+        chart.draw_series(dots.iter().map(dot))?;
     }
+    // Where there are no curves.
+    let falls = panel.guide.is_some_and(|(_, law)| law(4.0) < law(2.0));
     let legend = &mut chart.configure_series_labels();
-    legend.position(SeriesLabelPosition::UpperLeft).background_style(WHITE.mix(0.85)).border_style(BLACK.mix(0.2));
-    legend.label_font(text).draw()
+    legend
+        .position(if falls { SeriesLabelPosition::LowerLeft } else { SeriesLabelPosition::UpperLeft })
+        .background_style(WHITE.mix(0.85))
+        .border_style(BLACK.mix(0.2));
+    legend.label_font(text).legend_area_size(44).draw()
+}
+
+/// Whether it has a place on logarithmic axes.
+fn is_drawable(dot: &Dot) -> bool {
+    let (x, y) = dot.at;
+    x > 0.0 && y > 0.0 && x.is_finite() && y.is_finite()
+}
+
+fn family_of(id: &str) -> Option<Family> {
+    registry::find(id).map(|entry| entry.family)
+}
+
+/// Members of a family have one colour, the second darker and the third lighter.
+fn shaded(color: RGBColor, which: usize) -> RGBColor {
+    let toward = |end: u16, share: u16| move |c: u8| ((u16::from(c) * (4 - share) + end * share) / 4) as u8;
+    let mix = |end, share| RGBColor(toward(end, share)(color.0), toward(end, share)(color.1), toward(end, share)(color.2));
+    match which {
+        0 => color,
+        1 => mix(0, 2),
+        2 => mix(255, 2),
+        n => mix(if n.is_multiple_of(2) { 255 } else { 0 }, 1),
+    }
 }
 
 /// The colours of the light window.
 fn color_of(id: &str) -> RGBColor {
-    match registry::find(id).map(|entry| entry.family) {
+    match family_of(id) {
         Some(Family::Bvh) => RGBColor(0x22, 0x85, 0xC4),
         Some(Family::KdTree) => RGBColor(0x97, 0x58, 0x0E),
         Some(Family::Grid) => RGBColor(0x0B, 0x4A, 0x29),
@@ -114,8 +208,9 @@ fn short(x: &f64) -> String {
     match *x {
         x if x >= 1e6 => format!("{} M", x / 1e6),
         x if x >= 1e3 => format!("{} k", x / 1e3),
-        x if x >= 1e-3 => format!("{x}"),
-        x => format!("{x:e}"),
+        // Not to the last bit: 0.4, not 0.4000000000000001.
+        x if x >= 1e-3 => format!("{}", (x * 1e6).round() / 1e6),
+        x => format!("{x:.0e}"),
     }
 }
 
@@ -125,20 +220,25 @@ mod tests {
 
     #[test]
     fn every_curve_is_drawn_and_named() {
-        let curve = |id: &str, power: f64| Curve {
-            id: id.to_owned(),
-            points: [1e3, 1e4, 1e5].map(|n: f64| (n, 1e-6 * n.powf(power))).into(),
-        };
+        let curve = |id: &str, power: f64| Curve::of(id, [1e3, 1e4, 1e5].map(|n: f64| (n, 1e-6 * n.powf(power))));
         let guide: (_, fn(f64) -> f64) = ("N log N", |n| n * n.ln());
         let mut panel = Panel { title: "Builds".to_owned(), axes: ["triangles", "s"], curves: vec![], guide: Some(guide) };
         let empty = log_log(&[panel.clone()]).expect("drawn");
         panel.curves = vec![curve("bvh", 1.1), curve("kdtree", 1.2)];
-        panel.curves[1].points.push((1e6, f64::NAN));
+        panel.curves[1].points.push(Dot { at: (1e6, f64::NAN), span: None, hollow: false });
+        panel.curves[0].points[1].span = Some((9e3, 2e4));
+        panel.curves[0].points[2].span = Some((9e4, 2e5));
         let svg = log_log(&[panel.clone(), panel]).expect("drawn");
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && !svg.contains("NaN"));
         for said in ["bvh", "kdtree", "N log N", "triangles"] {
             assert_eq!(svg.matches(&format!("\n{said}\n")).count(), 2, "{said}");
         }
-        assert_eq!(svg.matches("<circle").count() - empty.matches("<circle").count(), 2 * (6 + 2));
+        // Points have an outline, keys have none.
+        assert_eq!(svg.matches("<circle").count() - empty.matches("<circle").count(), 2 * (2 * 6 + 2));
+        let png = png_of(&svg).expect("drawn");
+        let picture = image::load_from_memory(&png).expect("a picture").into_rgb8();
+        assert_eq!(picture.dimensions(), (4 * SIZE.0, 2 * SIZE.1));
+        let dark = |y: u32| (0..picture.width()).filter(|x| picture.get_pixel(*x, y).0.iter().all(|c| *c < 96)).count();
+        assert!((0..80).any(|y| dark(y) > 20), "the title is written");
     }
 }

@@ -81,7 +81,7 @@ pub fn ordered(
 ) -> Result<(RaySet, Charge), Failure> {
     // Rays are made in parts, each with its pixel, and then put together.
     let memory = cx.budget.charge(size.pixels() * 2 * (size_of::<crate::geometry::Ray>() as u64 + 8))?;
-    let job = Job { scene: Arc::clone(&model.scene), accel, camera, mode: Mode::Shaded, looks: Arc::default() };
+    let job = Job::new(Arc::clone(&model.scene), accel, camera, Mode::Shaded, Arc::default());
     let made = || RaySet::ordered(kind, order, &job, (size.width, size.height), &cx.pool, &cx.cancel);
     let set = bar::watch(&format!("{} rays", kind.id()), &Progress::new(), made)?;
     Ok((set, memory))

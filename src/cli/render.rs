@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use image::ImageEncoder;
 
-use super::args::{LookArgs, ModelArgs, SceneArgs, Size};
+use super::args::{AroundArgs, LookArgs, ModelArgs, SceneArgs, SeedArgs, Size, ToneArgs, TransportArgs, positive, seconds};
 use super::bar;
 use super::context::Context;
 use super::failure::Failure;
@@ -14,8 +14,10 @@ use super::output::{OutFile, print};
 use super::structures::{BuildArgs, One};
 use super::table::facts;
 use crate::accel::Accel;
-use crate::lab::format::{MISSING, bytes, duration, number, rate, ratio};
-use crate::render::{self, Job, Looks, Mode, Still, auto_range};
+use crate::lab::format::{MISSING, bytes, count, duration, number, percent, rate, ratio};
+use crate::render::sampler::{SamplerKind, Sampling};
+use crate::render::{self, Job, LinearPicture, Looks, Mode, Still, Until, Work, auto_range};
+use crate::scene::texture::Detail;
 use crate::scene::{CameraSpec, Geometry};
 use crate::sys;
 use crate::task::{Cancel, Phase, Progress};
@@ -33,9 +35,29 @@ pub struct Args {
     /// What is shown: shaded, path, ao, normals, depth, nodes or prims.
     #[arg(long, default_value = "shaded")]
     mode: Mode,
-    /// Samples a pixel.
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
-    spp: u32,
+    /// Samples a pixel; at most, where --seconds or --until-error say when it is done [default: 16, or 65536 with those].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    spp: Option<u32>,
+    /// Stop after so many seconds of rendering.
+    #[arg(long, value_name = "SECS", value_parser = seconds)]
+    seconds: Option<f64>,
+    /// Stop once the estimated noise is down to this: root mean square of the standard errors of linear red, green and blue.
+    #[arg(long, value_name = "ERROR", value_parser = positive)]
+    until_error: Option<f64>,
+    /// No more samples for pixels that have converged to half a step of 256. It biases the picture by less than it shows.
+    #[arg(long)]
+    adaptive: bool,
+    /// The numbers samples are made of: independent, sobol or blue-noise.
+    #[arg(long, default_value = "independent")]
+    sampler: SamplerKind,
+    #[command(flatten)]
+    seed: SeedArgs,
+    #[command(flatten)]
+    around: AroundArgs,
+    #[command(flatten)]
+    transport: TransportArgs,
+    #[command(flatten)]
+    tone: ToneArgs,
     /// Columns and rows.
     #[arg(long, value_name = "WxH", default_value = "1280x800")]
     size: Size,
@@ -51,8 +73,10 @@ pub struct Args {
 const BYTES_PER_PIXEL: u64 = 32;
 
 pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
-    if !args.output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
-        return Err(Failure::Input(format!("Can't write {}: pictures are .png files", args.output.display())));
+    let ending = args.output.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+    let is_exr = ending.as_deref() == Some("exr".as_ref());
+    if !is_exr && ending.as_deref() != Some("png".as_ref()) {
+        return Err(Failure::Input(format!("Can't write {}: pictures are .png or .exr files", args.output.display())));
     }
     let out = OutFile::at(&args.output)?;
     let One(entry) = args.structure;
@@ -63,22 +87,56 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let built = cx.build(entry, &model, args.build.test, &params)?;
 
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
-    let looks = if args.mode.shows_looks() { cx.looks(&model)? } else { Looks::default() };
+    let looks = match args.mode {
+        Mode::Path => cx.looks(&model, Detail::Light)?.within(args.around.surroundings(&cx)?),
+        mode if mode.shows_looks() => cx.looks(&model, Detail::Colors)?,
+        _ => Looks::default(),
+    };
     let memory = memory(&model.geometry, built.accel.as_ref());
     let times =
         [("open", phases(&model.phases)), ("build", format!("{}: {}", duration(built.build_secs), phases(&built.phases)))];
-    let job = Job { scene: model.scene, accel: built.accel, camera, mode: args.mode, looks: Arc::new(looks) };
-    let (width, height) = (args.size.width, args.size.height);
-    let progress = Progress::new();
-    let still =
-        bar::watch("render", &progress, || render::render(&job, width, height, args.spp, &cx.pool, &cx.cancel, &progress))?;
-    let pixels = still.develop(&job, None, None, &cx.pool);
-    out.write(&cx.cancel, |file| {
-        let png = image::codecs::png::PngEncoder::new(&mut *file);
-        png.write_image(&pixels, width, height, image::ExtendedColorType::Rgba8).map_err(std::io::Error::other)?;
-        file.flush()
-    })?;
+    let job = Job {
+        sampling: Sampling { kind: args.sampler, seed: args.seed.seed },
+        transport: args.transport.transport(),
+        ..Job::new(model.scene, built.accel, camera, args.mode, Arc::new(looks))
+    };
+    let size = (args.size.width, args.size.height);
+    let (progress, until) = (Progress::new(), args.until());
+    let still = bar::watch("render", &progress, || render::render(&job, size, &until, &cx.pool, &cx.cancel, &progress))?;
+    if is_exr {
+        let picture = LinearPicture { width: size.0, height: size.1, pixels: still.film.linear(), notes: args.notes(&still) };
+        out.write(&cx.cancel, |file| picture.write(file).map_err(std::io::Error::other))?;
+    } else {
+        let pixels = still.develop(&job, None, args.tone.tone(), None, &cx.pool);
+        out.write(&cx.cancel, |file| {
+            let png = image::codecs::png::PngEncoder::new(&mut *file);
+            png.write_image(&pixels, size.0, size.1, image::ExtendedColorType::Rgba8).map_err(std::io::Error::other)?;
+            file.flush()
+        })?;
+    }
     print(&text(args, &still, times, memory))
+}
+
+impl Args {
+    fn until(&self) -> Until {
+        let open = self.seconds.is_some() || self.until_error.is_some();
+        let samples = self.spp.unwrap_or(if open { 1 << 16 } else { 16 });
+        Until { samples, secs: self.seconds, noise: self.until_error, adaptive: self.adaptive }
+    }
+
+    /// What an EXR file says of its picture.
+    fn notes(&self, still: &Still) -> Vec<(String, String)> {
+        let notes = [
+            ("model", self.model.model.clone()),
+            ("structure", self.structure.0.id.to_owned()),
+            ("mode", self.mode.id().to_owned()),
+            ("spp", still.film.samples().to_string()),
+            ("sampler", self.sampler.id().to_owned()),
+            ("seed", self.seed.seed.to_string()),
+            ("seconds", still.secs.to_string()),
+        ];
+        notes.map(|(key, value)| (key.to_owned(), value)).into()
+    }
 }
 
 /// `read 400 ms, flatten 800 ms`; phases that come several times, as for each mesh, are summed up.
@@ -110,10 +168,30 @@ fn memory(geometry: &Geometry, accel: &dyn Accel) -> String {
     )
 }
 
+/// What the threads' time went to.
+fn shares(work: &Work) -> String {
+    let parts =
+        [("tracing", work.tracing), ("shading", work.shading), ("the rest", work.rest)].map(|(n, d)| (n, d.as_secs_f64()));
+    let all: f64 = parts.iter().map(|(_, secs)| secs).sum();
+    parts.map(|(name, secs)| format!("{} {name}", percent(secs / all.max(f64::MIN_POSITIVE)))).join(", ")
+}
+
 fn text(args: &Args, still: &Still, [open, build]: [(&'static str, String); 2], memory: String) -> String {
-    let picture = format!("{}, {}, {} spp, {}", args.output.display(), args.size, args.spp, args.mode.id());
-    let speed = format!("{}, {}", duration(still.secs), rate(still.rays as f64 / still.secs));
-    let mut lines = vec![("picture", picture), open, build, ("trace", speed), ("memory", memory)];
+    let samples = still.film.samples();
+    let picture = format!("{}, {}, {samples} spp, {}", args.output.display(), args.size, args.mode.id());
+    let speed = format!("{}, {}", duration(still.secs), rate(still.work.rays as f64 / still.secs));
+    let mut lines = vec![("picture", picture), open, build, ("trace", speed), ("time", shares(&still.work)), ("memory", memory)];
+    if let Some(noise) = still.film.noise() {
+        let share = percent(still.film.share());
+        lines
+            .push(("noise", format!("{noise:.3e} estimated after {}; {share} of pixels in the last pass", duration(still.secs))));
+    }
+    if let Some(most) = args.transport.clamp {
+        let Work { clamped, lost, .. } = still.work;
+        let light: f64 = still.film.linear().iter().flatten().map(|x| f64::from(*x)).sum::<f64>() * f64::from(samples);
+        let share = percent(lost / (lost + light).max(f64::MIN_POSITIVE));
+        lines.push(("clamped", format!("{} contributions above {most}: {share} of the light is missing", count(clamped))));
+    }
     if args.mode.is_scalar() {
         let range = auto_range(&still.film, args.mode);
         let unit = match args.mode {

@@ -173,8 +173,8 @@ fn subdivided(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), 
 /// The times of builds and of rays.
 fn panels(outcome: &Outcome) -> [Panel; 2] {
     let curves = |secs: fn(&Point) -> f64| {
-        let points = |s: &Scaling| s.points.iter().map(|p| (p.triangles as f64, secs(p))).collect();
-        outcome.structures.iter().map(|s| Curve { id: s.id.clone(), points: points(s) }).collect()
+        let points = |s: &Scaling| s.points.iter().map(|p| (p.triangles as f64, secs(p))).collect::<Vec<_>>();
+        outcome.structures.iter().map(|s| Curve::of(&s.id, points(s))).collect()
     };
     let threads = outcome.machine.threads;
     [

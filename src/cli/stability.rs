@@ -190,8 +190,8 @@ fn panel(outcome: &Outcome) -> Panel {
     let point = |id: &str, test| (mean(id, test, |row| row.ns_per_ray), mean(id, test, |row| row.p999_ulps.max(LEAST_ULPS)));
     let order = [TestKind::Fast, TestKind::BaldwinWeber, TestKind::Watertight, TestKind::Double, TestKind::Exact];
     let tried = |id: &str, test| rows().any(|row| row.id == id && row.test == test && row.error.is_none());
-    let points = |id: &str| order.into_iter().filter(|test| tried(id, *test)).map(|test| point(id, test)).collect();
-    let curve = |id: &&str| Curve { id: (*id).to_owned(), points: points(id) };
+    let points = |id: &str| order.into_iter().filter(|test| tried(id, *test)).map(|test| point(id, test)).collect::<Vec<_>>();
+    let curve = |id: &&str| Curve::of(id, points(id));
     Panel {
         title: "Error of t against time, a point a triangle test".to_owned(),
         axes: ["nanoseconds of a ray, mean over cases", "ulps that one clear hit in a thousand exceeds"],

@@ -3,7 +3,7 @@
 //! if no line is likelier than another.
 
 use crate::geometry::{Aabb, Axis, Ray};
-use crate::render::sampler::{Sampler, cosine_direction};
+use crate::render::sampler::{Random, cosine_direction};
 use glam::{DVec3, Vec3};
 
 /// The `i`-th of the random lines through a box of the world, the same every time. It starts outside
@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 /// Lines are spread evenly over all lines that meet the box: the point where one enters is spread
 /// evenly over the box's surface, and its direction about the face's inward normal by cosine.
 pub fn line(bounds: &Aabb, i: u64) -> Ray {
-    let sampler = Sampler::new((i & 0xFFFF_FFFF) as u32, (i >> 32) as u32, 0);
+    let sampler = Random::new((i & 0xFFFF_FFFF) as u32, (i >> 32) as u32, 0);
     let (size, [face, place, turn]) = (bounds.max.as_dvec3() - bounds.min.as_dvec3(), [0, 1, 2].map(|d| sampler.pair(d)));
     let (axis, up) = pick_face(size, f64::from(face.x));
     let (k, u, v) = (axis.index(), (axis.index() + 1) % 3, (axis.index() + 2) % 3);

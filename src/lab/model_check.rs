@@ -84,8 +84,7 @@ pub fn check_model(
 ) -> Result<ModelCheck, CheckError> {
     let mesh = check(geometry, cx)?;
     let reference = Reference::build(geometry, mesh.is_closed(), cx)?;
-    let job =
-        Job { scene: Arc::clone(scene), accel: Arc::clone(&reference.accel), camera, mode: Mode::Shaded, looks: Arc::default() };
+    let job = Job::new(Arc::clone(scene), Arc::clone(&reference.accel), camera, Mode::Shaded, Arc::default());
     let mut rays = Vec::new();
     for kind in [RayKind::Primary, RayKind::Diffuse] {
         rays.extend(RaySet::generate(kind, &job, width, height, &cx.pool, &cx.cancel)?.rays);

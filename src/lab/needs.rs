@@ -76,7 +76,7 @@ impl Kept {
     }
 
     fn job(&self, camera: Camera, looks: Arc<Looks>) -> Job {
-        Job { scene: Arc::clone(&self.scene), accel: Arc::clone(&self.accel), camera, mode: Mode::Shaded, looks }
+        Job::new(Arc::clone(&self.scene), Arc::clone(&self.accel), camera, Mode::Shaded, looks)
     }
 }
 

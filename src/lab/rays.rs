@@ -6,7 +6,7 @@ use super::lines::line;
 use crate::accel::{Hit, Mode};
 use crate::geometry::Ray;
 use crate::render::Job;
-use crate::render::sampler::{Sampler, cosine_direction};
+use crate::render::sampler::{Random, cosine_direction};
 use crate::render::spawn::Point;
 use crate::scene::{Camera, Geometry};
 use crate::task::{Cancel, Cancelled, Pool};
@@ -168,7 +168,7 @@ impl RaySet {
             let leave = |(i, (ray, hit)): (usize, (&Ray, &Option<Hit>))| {
                 let point = Point::of(geometry, ray, hit.as_ref()?);
                 let (x, y) = pixel(i);
-                Some(((x, y), second(kind, &point, geometry, light, &Sampler::new(x, y, 0))))
+                Some(((x, y), second(kind, &point, geometry, light, &Random::new(x, y, 0))))
             };
             Ok(rays.iter().zip(&hits).enumerate().filter_map(leave).collect())
         };
@@ -204,7 +204,7 @@ impl RaySet {
 }
 
 /// The ray that leaves a primary hit.
-fn second(kind: RayKind, point: &Point, geometry: &Geometry, light: Vec3, sampler: &Sampler) -> Ray {
+fn second(kind: RayKind, point: &Point, geometry: &Geometry, light: Vec3, sampler: &Random) -> Ray {
     match kind {
         RayKind::Primary | RayKind::Shadow | RayKind::Lines => point.segment_to(geometry, light),
         RayKind::Diffuse | RayKind::Shuffled => point.ray(geometry, cosine_direction(point.normal, sampler.pair(BOUNCE))),
@@ -233,7 +233,7 @@ fn morton(x: u32) -> u64 {
 /// Puts the rays in a random order, the same for the same number of rays (Fisher and Yates).
 fn shuffle(rays: &mut [Ray]) {
     for i in (1..rays.len()).rev() {
-        let random = Sampler::new(crate::geometry::num::index(i), 0, 0).bits(SHUFFLE);
+        let random = Random::new(crate::geometry::num::index(i), 0, 0).bits(SHUFFLE);
         rays.swap(i, ((u128::from(random) * (i as u128 + 1)) >> 64) as usize);
     }
 }

@@ -18,6 +18,16 @@ pub fn viridis(t: f32) -> [f32; 3] {
     [0, 1, 2].map(|k| channel(k).clamp(0.0, 1.0))
 }
 
+/// Signed amounts: blue at -1, white at 0, orange at 1, as gamma-encoded red, green, blue.
+pub fn difference(t: f32) -> [f32; 3] {
+    const BLUE: [f32; 3] = [0.13, 0.35, 0.67];
+    const ORANGE: [f32; 3] = [0.87, 0.42, 0.05];
+    const WHITE: [f32; 3] = [0.97, 0.97, 0.97];
+    let t = if t.is_nan() { 0.0 } else { t.clamp(-1.0, 1.0) };
+    let end = if t < 0.0 { BLUE } else { ORANGE };
+    std::array::from_fn(|k| WHITE[k] + (end[k] - WHITE[k]) * t.abs())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,5 @@
-//! From sums of samples to bytes: exposure is one, colours are gamma-encoded, amounts go through a
-//! range and a colour map.
+//! From sums of samples to bytes: light is exposed and goes through a curve, colours are gamma-encoded, amounts go through
+//! a range and a colour map.
 
 use std::sync::LazyLock;
 
@@ -17,6 +17,76 @@ pub struct Range {
     pub max: f32,
 }
 
+/// How light becomes colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct Tone {
+    /// In stops: each doubles the light.
+    pub exposure: f32,
+    /// What becomes of light that is brighter than a picture can show.
+    pub curve: Curve,
+}
+
+/// From light to what a screen shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Curve {
+    /// As it is; what is too bright is white.
+    #[default]
+    Plain,
+    /// Bent at both ends as film does (Narkowicz 2016, a fit of the curve of the Academy Color Encoding System).
+    Filmic,
+}
+
+impl Curve {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Plain, Self::Filmic];
+
+    /// The name on the command line and in files.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::Filmic => "filmic",
+        }
+    }
+
+    /// The name in the window.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Plain => "Plain",
+            Self::Filmic => "Filmic",
+        }
+    }
+
+    fn of(self, x: f32) -> f32 {
+        match self {
+            Self::Plain => x,
+            Self::Filmic if x.is_finite() => {
+                let x = x.clamp(0.0, 1e6);
+                x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)
+            }
+            Self::Filmic => 1.0,
+        }
+    }
+}
+
+impl std::str::FromStr for Curve {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|curve| curve.id() == s);
+        known.ok_or_else(|| format!("there is no curve '{s}': use plain or filmic"))
+    }
+}
+
+impl Tone {
+    /// Linear light in a pixel's range of 0 to 1, not yet encoded.
+    pub fn of(self, light: [f32; 3]) -> [f32; 3] {
+        let factor = self.exposure.exp2();
+        light.map(|x| self.curve.of(x * factor))
+    }
+}
+
 /// How to develop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Development {
@@ -24,6 +94,8 @@ pub struct Development {
     pub mode: Mode,
     /// For amounts.
     pub range: Range,
+    /// For light: in [`Mode::Path`].
+    pub tone: Tone,
     /// Behind what is hit: gamma-encoded red, green and blue; `None` leaves it transparent, and
     /// colours are multiplied by their opacity.
     pub background: Option<[f32; 3]>,
@@ -66,7 +138,8 @@ impl Development {
         } else if self.mode.is_scalar() {
             self.amount(r / coverage)
         } else {
-            [r, g, b].map(|x| encode(x / coverage))
+            let color = [r, g, b].map(|x| x / coverage);
+            (if self.mode == Mode::Path { self.tone.of(color) } else { color }).map(encode)
         };
         let (behind, opacity) = self.background.map_or(([0.0; 3], coverage), |behind| (behind, 1.0));
         let over = |k: usize| byte(color[k] * coverage + behind[k] * (1.0 - coverage));
@@ -84,7 +157,7 @@ const STEPS: usize = 4096;
 
 /// Linear light to sRGB by a table, linear in between: a twentieth of a byte's step off at most, and
 /// far faster than a power for each channel of each pixel.
-pub(super) fn encode(x: f32) -> f32 {
+pub fn encode(x: f32) -> f32 {
     static TABLE: LazyLock<Vec<f32>> = LazyLock::new(|| (0..=STEPS).map(|i| srgb(i as f32 / STEPS as f32)).collect());
     let at = x.clamp(0.0, 1.0) * STEPS as f32;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]
@@ -105,6 +178,18 @@ fn byte(x: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn curves_rise_and_exposure_doubles() {
+        for curve in Curve::ALL {
+            assert_eq!(curve.id().parse(), Ok(curve));
+            let at: Vec<f32> = (0..400u16).map(|i| curve.of(f32::from(i) * 0.05)).collect();
+            assert!(at[0].abs() < 1e-6 && at.is_sorted(), "{curve:?}");
+        }
+        let tone = Tone { exposure: 1.0, curve: Curve::Plain };
+        assert_eq!(tone.of([0.25, 0.5, 0.0]), [0.5, 1.0, 0.0]);
+        assert!(Curve::Filmic.of(100.0) <= 1.05 && Curve::Filmic.of(f32::INFINITY) == 1.0);
+    }
 
     #[test]
     fn the_table_is_as_good_as_the_formula() {

@@ -14,8 +14,10 @@ pub struct Film {
     /// Linear depth of the first sample, infinite for a miss, in the scaled space.
     depth: Arc<Vec<f32>>,
     samples: u32,
-    /// How sure each pixel is, where those that are get no more samples.
+    /// How sure each pixel is, if that is asked.
     spreads: Option<Vec<Spread>>,
+    /// Whether those that are sure get no more samples.
+    rests: bool,
     /// Pixels that got a sample in the last pass.
     sampled: usize,
 }
@@ -36,13 +38,18 @@ impl Film {
         let (width, height) = (width.max(1), height.max(1));
         let pixels = width as usize * height as usize;
         let depth = Arc::new(vec![f32::INFINITY; pixels]);
-        Self { width, height, sums: vec![[0.0; 4]; pixels], depth, samples: 0, spreads: None, sampled: pixels }
+        Self { width, height, sums: vec![[0.0; 4]; pixels], depth, samples: 0, spreads: None, rests: false, sampled: pixels }
+    }
+
+    /// The same, which estimates its noise ([`Self::noise`]).
+    pub fn estimating(width: u32, height: u32) -> Self {
+        let film = Self::new(width, height);
+        Self { spreads: Some(vec![Spread::default(); film.pixels()]), ..film }
     }
 
     /// The same, of which pixels that have converged get no more samples.
     pub fn converging(width: u32, height: u32) -> Self {
-        let film = Self::new(width, height);
-        Self { spreads: Some(vec![Spread::default(); film.pixels()]), ..film }
+        Self { rests: true, ..Self::estimating(width, height) }
     }
 
     /// Columns.
@@ -78,7 +85,7 @@ impl Film {
 
     /// For each pixel whether it has converged; `None` if nobody asks, or none can have.
     pub(super) fn converged(&self) -> Option<Vec<bool>> {
-        let spreads = self.spreads.as_ref().filter(|_| self.samples >= spread::LEAST);
+        let spreads = self.spreads.as_ref().filter(|_| self.rests && self.samples >= spread::LEAST);
         spreads.map(|spreads| spread::at_rest(spreads, self.width as usize))
     }
 
@@ -111,6 +118,20 @@ impl Film {
     /// The mean of each pixel's samples.
     pub fn means(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
         (0..self.pixels()).map(|pixel| self.mean(pixel))
+    }
+
+    /// The estimated noise: the standard error of pixels' linear red, green and blue, root mean square over the picture. From
+    /// the samples alone (Welford 1962), as if they were independent: those that fill space evenly are less noisy than that.
+    /// `None` if it was not asked for, or there are fewer than two samples.
+    pub fn noise(&self) -> Option<f64> {
+        let spreads = self.spreads.as_ref().filter(|_| self.samples >= 2)?;
+        let sum: f64 = spreads.iter().map(Spread::error_squared).sum();
+        Some((sum / (3.0 * spreads.len() as f64)).sqrt())
+    }
+
+    /// Linear red, green and blue of each pixel over black.
+    pub fn linear(&self) -> Vec<[f32; 3]> {
+        self.means().map(|[r, g, b, _]| [r, g, b]).collect()
     }
 
     /// Linear depths of the first sample, in the scaled space.

@@ -4,11 +4,11 @@
 use std::sync::{Arc, OnceLock};
 
 use super::Mode;
-use super::light::Sources;
+use super::light::{Sources, Surroundings};
 use crate::accel::{self, Accel, Filter, Hit, Traced};
 use crate::geometry::Ray;
 use crate::scene::coverage::{Surface, tested_meshes};
-use crate::scene::texture::Textures;
+use crate::scene::texture::{Detail, Textures};
 use crate::scene::{Feature, Geometry, Keep, LoadCx, Needs, Scene};
 use crate::task::{Cancel, Cancelled};
 
@@ -19,6 +19,7 @@ pub struct Looks {
     needs: Needs,
     /// By mesh, whether hits on it need the alpha test; empty if none does.
     tested: Vec<bool>,
+    surroundings: Surroundings,
     /// Worked out when a path is first followed.
     sources: OnceLock<Arc<Sources>>,
 }
@@ -32,6 +33,7 @@ impl Looks {
             needs,
             textures: Arc::new(textures),
             tested: if tested.contains(&true) { tested } else { Vec::new() },
+            surroundings: Surroundings::default(),
             sources: OnceLock::new(),
         }
     }
@@ -39,24 +41,40 @@ impl Looks {
     /// Treats every surface as if it needed everything: every hit is asked whether it counts, every shading looks for
     /// normals, colours and images.
     pub fn of_everything(scene: &Scene, textures: Textures) -> Self {
-        Self { needs: Needs::ALL, textures: Arc::new(textures), tested: vec![true; scene.meshes.len()], sources: OnceLock::new() }
+        Self { tested: vec![true; scene.meshes.len()], textures: Arc::new(textures), ..Self::default() }
     }
 
-    /// Decodes the scene's textures; where all is to be kept it treats every surface alike ([`Self::of_everything`]).
+    /// Decodes the scene's textures, as many as `detail` needs; where all is to be kept it treats every surface alike ([`Self::of_everything`]).
     ///
     /// # Errors
     /// [`Cancelled`] within 100 ms of the request.
-    pub fn decode(scene: &Scene, cx: &LoadCx) -> Result<Self, Cancelled> {
+    pub fn decode(scene: &Scene, detail: Detail, cx: &LoadCx) -> Result<Self, Cancelled> {
         let looks = match cx.keep {
             Keep::Needed => Self::new,
             Keep::All => Self::of_everything,
         };
-        Ok(looks(scene, Textures::decode(scene, cx)?))
+        Ok(looks(scene, Textures::decode(scene, detail, cx)?))
     }
 
     /// The same with the shading of other needs: for measuring what it costs.
     pub fn with_shading(&self, needs: Needs) -> Self {
-        Self { textures: Arc::clone(&self.textures), needs, tested: self.tested.clone(), sources: self.sources.clone() }
+        Self {
+            textures: Arc::clone(&self.textures),
+            needs,
+            tested: self.tested.clone(),
+            surroundings: self.surroundings.clone(),
+            sources: self.sources.clone(),
+        }
+    }
+
+    /// The same with something else around it.
+    pub fn within(self, surroundings: Surroundings) -> Self {
+        Self { surroundings, sources: OnceLock::new(), ..self }
+    }
+
+    /// What is around.
+    pub const fn surroundings(&self) -> &Surroundings {
+        &self.surroundings
     }
 
     /// The same under other lights than the scene's.
@@ -69,7 +87,7 @@ impl Looks {
         match self.sources.get() {
             Some(sources) => Ok(Arc::clone(sources)),
             None => {
-                let sources = Arc::new(Sources::of(scene, geometry, cancel)?);
+                let sources = Arc::new(Sources::of(scene, geometry, (&self.textures, &self.surroundings), cancel)?);
                 Ok(Arc::clone(self.sources.get_or_init(|| sources)))
             }
         }
@@ -111,7 +129,13 @@ impl Looks {
 impl Default for Looks {
     /// Solid surfaces without images, of any scene.
     fn default() -> Self {
-        Self { textures: Arc::default(), needs: Needs::ALL, tested: Vec::new(), sources: OnceLock::new() }
+        Self {
+            textures: Arc::default(),
+            needs: Needs::ALL,
+            tested: Vec::new(),
+            surroundings: Surroundings::default(),
+            sources: OnceLock::new(),
+        }
     }
 }
 

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use crate::accel::probe::Counts;
 use crate::scene::Camera;
+use crate::task::Charge;
 
 /// Bytes to show, the depth behind them, and how they came to be.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Picture {
     /// Grows with every picture; two of one generation are the same.
     pub generation: u64,
@@ -27,6 +28,22 @@ pub struct Picture {
     pub range: Range,
     /// How far the picture is.
     pub progress: Progress,
+    /// What was kept on the way, if that was asked for.
+    pub shots: Vec<Arc<Shot>>,
+}
+
+/// What is kept of a picture on its way: the light of so many samples.
+#[derive(Debug)]
+pub struct Shot {
+    /// Samples in each pixel.
+    pub samples: u32,
+    /// Seconds that they took to trace and shade.
+    pub secs: f64,
+    /// The estimated noise.
+    pub noise: Option<f64>,
+    /// Linear red, green and blue, row by row; `None` where the memory budget had no room.
+    pub light: Option<Vec<[f32; 3]>>,
+    pub(super) _memory: Option<Charge>,
 }
 
 /// How far a picture is, and at what pace.
@@ -38,6 +55,8 @@ pub struct Progress {
     pub step: u32,
     /// Seconds from the request to this picture.
     pub secs: f64,
+    /// The estimated noise, once there are two samples ([`super::Film::noise`]).
+    pub noise: Option<f64>,
     /// The share of pixels that got a sample in this pass: the others cannot see the scene, or have converged.
     pub share: f64,
     /// Rays traced a second in this pass, by all threads.

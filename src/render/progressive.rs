@@ -11,10 +11,10 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::tile::Job;
-use super::{Development, Film, Picture, Progress, Range, auto_range};
+use super::{Development, Film, Picture, Progress, Range, Shot, Tone, auto_range};
 use crate::accel;
 use crate::accel::probe::Counts;
-use crate::task::{Cancel, Cancelled, Pool};
+use crate::task::{Budget, Cancel, Cancelled, Pool};
 
 /// The time in which the first, coarse pass should be there, so that a frame can hold on for it. It may
 /// well take twice as long: the first rays through a cold structure foresee little.
@@ -39,6 +39,20 @@ pub struct Request {
     pub max_samples: u32,
     /// For amounts; `None` takes one that suits the first full pass.
     pub range: Option<Range>,
+    /// For light.
+    pub tone: Tone,
+    /// Where to charge the light of 1, 2, 4, … samples that is kept beside the picture ([`Shot`]); `None` to keep none.
+    pub keep: Option<Budget>,
+}
+
+impl Request {
+    /// Whether its samples are those of another request: only what becomes of them differs.
+    fn has_samples_of(&self, other: &Self) -> bool {
+        let (a, b) = (&self.job, &other.job);
+        let same = Arc::ptr_eq(&a.scene, &b.scene) && Arc::ptr_eq(&a.accel, &b.accel) && Arc::ptr_eq(&a.looks, &b.looks);
+        let how = (a.camera, a.mode, a.sampling, a.transport) == (b.camera, b.mode, b.sampling, b.transport);
+        same && how && (self.width, self.height) == (other.width, other.height) && self.keep.is_some() == other.keep.is_some()
+    }
 }
 
 /// The background threads and what they were last asked for. Dropping it stops them.
@@ -186,8 +200,16 @@ struct Task {
     counted: u64,
     /// Seconds to find a camera ray's hit, as foreseen.
     ray_secs: f64,
+    /// Of the last pass.
+    rays_per_sec: f64,
     /// The film of full resolution, kept over a pause.
     film: Option<Film>,
+    /// Seconds of its passes.
+    film_secs: f64,
+    /// Whether its picture is to be made anew, without another sample.
+    redevelop: bool,
+    /// What is kept of it on the way.
+    shots: Vec<Arc<Shot>>,
 }
 
 impl<N: Fn()> Worker<N> {
@@ -202,7 +224,7 @@ impl<N: Fn()> Worker<N> {
     }
 
     /// Waits for something to do: a new request, or the present one if it is not done. `None` to quit.
-    fn next(&self, present: Option<Task>) -> Option<(Task, Cancel)> {
+    fn next(&self, mut present: Option<Task>) -> Option<(Task, Cancel)> {
         let mut state = self.shared.lock();
         state.running = false;
         self.shared.wake.notify_all();
@@ -210,25 +232,29 @@ impl<N: Fn()> Worker<N> {
             if state.quit {
                 return None;
             }
+            // Nothing of a scene that is gone is held on to.
+            present = present.filter(|_| state.request.is_some());
             let fresh = present.as_ref().is_none_or(|task| task.number != state.number);
             if state.pauses == 0
                 && let Some(request) = &state.request
             {
                 let unfinished = |task: &Task| task.film.as_ref().is_none_or(|f| !f.is_done(task.request.max_samples));
-                let next = if fresh { Some(Task::new(request.clone(), state.number)) } else { present.filter(unfinished) };
-                if let Some(task) = next {
-                    state.cancel = Cancel::new();
-                    state.running = true;
-                    return Some((task, state.cancel.clone()));
-                }
-                return self.wait_for_request(state);
+                let next = match present {
+                    Some(task) if fresh => Task::after(task, request.clone(), state.number),
+                    None => Task::new(request.clone(), state.number),
+                    Some(done) if !unfinished(&done) => return self.wait_for_request(state, done),
+                    Some(task) => task,
+                };
+                state.cancel = Cancel::new();
+                state.running = true;
+                return Some((next, state.cancel.clone()));
             }
             state = self.shared.wake.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
     /// The picture is done: only a new request, or the end, goes on.
-    fn wait_for_request(&self, mut state: MutexGuard<'_, State>) -> Option<(Task, Cancel)> {
+    fn wait_for_request(&self, mut state: MutexGuard<'_, State>, present: Task) -> Option<(Task, Cancel)> {
         let done = state.number;
         loop {
             state = self.shared.wake.wait(state).unwrap_or_else(PoisonError::into_inner);
@@ -237,7 +263,7 @@ impl<N: Fn()> Worker<N> {
             }
             if state.number != done {
                 drop(state);
-                return self.next(None);
+                return self.next(Some(present));
             }
         }
     }
@@ -255,6 +281,9 @@ impl<N: Fn()> Worker<N> {
             task.film = Some(film(task.request.width, task.request.height));
         }
         let Some(mut film) = task.film.take() else { return Ok(()) };
+        if std::mem::take(&mut task.redevelop) {
+            self.publish(task, &film, 1);
+        }
         while !film.is_done(task.request.max_samples) {
             // A stopped pass has left parts of a sample behind: keep what was whole.
             let whole = film.clone();
@@ -270,8 +299,21 @@ impl<N: Fn()> Worker<N> {
     /// One pass, and the picture it makes.
     fn pass(&mut self, task: &mut Task, film: &mut Film, step: u32, cancel: &Cancel) -> Result<(), Cancelled> {
         let start = Instant::now();
-        let rays = task.request.job.pass(film, &self.pool, cancel)?;
-        let rays_per_sec = rays as f64 / start.elapsed().as_secs_f64().max(1e-9);
+        let work = task.request.job.pass(film, &self.pool, cancel)?;
+        let secs = start.elapsed().as_secs_f64();
+        task.rays_per_sec = work.rays as f64 / secs.max(1e-9);
+        if step == 1 {
+            task.film_secs += secs;
+            task.keep(film);
+        }
+        self.publish(task, film, step);
+        let overhead_secs = start.elapsed().as_secs_f64() / film.pixels() as f64 - task.ray_secs;
+        self.overhead_secs = (0.5 * (self.overhead_secs + overhead_secs)).max(0.0);
+        Ok(())
+    }
+
+    /// Makes a picture of a film, for whoever asked.
+    fn publish(&mut self, task: &mut Task, film: &Film, step: u32) {
         let mode = task.request.job.mode;
         let range = if mode.is_scalar() {
             *task.range.get_or_insert_with(|| auto_range(film, mode))
@@ -285,17 +327,16 @@ impl<N: Fn()> Worker<N> {
         let progress = Progress {
             samples: film.samples(),
             share: film.share(),
+            noise: film.noise(),
             step,
             secs: task.start.elapsed().as_secs_f64(),
-            rays_per_sec,
+            rays_per_sec: task.rays_per_sec,
             counts: task.counts,
             counted: task.counted,
             done,
         };
         self.generation += 1;
-        let rgba = self.pool.run(|| Development { mode, range, background: None }.develop(film));
-        let overhead_secs = start.elapsed().as_secs_f64() / film.pixels() as f64 - task.ray_secs;
-        self.overhead_secs = (0.5 * (self.overhead_secs + overhead_secs)).max(0.0);
+        let rgba = self.pool.run(|| Development { mode, range, tone: task.request.tone, background: None }.develop(film));
         let picture = Picture {
             generation: self.generation,
             request: task.number,
@@ -306,6 +347,7 @@ impl<N: Fn()> Worker<N> {
             depth: Arc::clone(film.depth()),
             range,
             progress,
+            shots: task.shots.clone(),
         };
         let mut state = self.shared.lock();
         if state.number == task.number {
@@ -314,7 +356,6 @@ impl<N: Fn()> Worker<N> {
         drop(state);
         self.shared.wake.notify_all();
         (self.notify)();
-        Ok(())
     }
 
     /// How coarse the first pass has to be. A grid of camera rays is counted and timed: enough to
@@ -351,7 +392,37 @@ impl<N: Fn()> Worker<N> {
 
 impl Task {
     fn new(request: Request, number: u64) -> Self {
-        let range = request.range;
-        Self { request, number, start: Instant::now(), range, counts: Counts::default(), counted: 0, ray_secs: 0.0, film: None }
+        Self {
+            number,
+            start: Instant::now(),
+            range: request.range,
+            counts: Counts::default(),
+            counted: 0,
+            ray_secs: 0.0,
+            rays_per_sec: 0.0,
+            film: None,
+            film_secs: 0.0,
+            redevelop: false,
+            shots: Vec::new(),
+            request,
+        }
+    }
+
+    /// A new request after this one, which goes on with its samples where it can.
+    fn after(self, request: Request, number: u64) -> Self {
+        if self.film.is_some() && request.has_samples_of(&self.request) {
+            Self { number, range: request.range, redevelop: true, request, ..self }
+        } else {
+            Self::new(request, number)
+        }
+    }
+
+    /// Keeps the light of 1, 2, 4, … samples; what does not fit the budget is kept without it.
+    fn keep(&mut self, film: &Film) {
+        let Some(budget) = self.request.keep.as_ref().filter(|_| film.samples().is_power_of_two()) else { return };
+        let memory = budget.charge((film.pixels() * size_of::<[f32; 3]>()) as u64).ok();
+        let light = memory.as_ref().map(|_| film.linear());
+        let (samples, secs, noise) = (film.samples(), self.film_secs, film.noise());
+        self.shots.push(Arc::new(Shot { samples, secs, noise, light, _memory: memory }));
     }
 }

@@ -1,8 +1,8 @@
 //! The look of a hit.
 
-use glam::{Mat3A, Vec3};
+use glam::{Mat3A, Vec2, Vec3};
 
-use super::sampler::{Sampler, cosine_direction};
+use super::sampler::cosine_direction;
 use super::spawn::Point;
 use super::{Job, Mode};
 use crate::accel::Hit;
@@ -13,7 +13,12 @@ use crate::scene::{Feature, Geometry, Needs, coverage};
 /// to be turned with the instance (`TURNED`).
 #[inline(always)]
 fn normal<const SMOOTH: bool, const TURNED: bool>(job: &Job, ray: &Ray, hit: &Hit) -> Vec3 {
-    let facing = Point::of(job.accel.geometry(), ray, hit).normal;
+    bent_by_vertices::<SMOOTH, TURNED>(job, ray, hit, Point::of(job.accel.geometry(), ray, hit).normal)
+}
+
+/// The same from the triangle's normal.
+#[inline(always)]
+fn bent_by_vertices<const SMOOTH: bool, const TURNED: bool>(job: &Job, ray: &Ray, hit: &Hit, facing: Vec3) -> Vec3 {
     let instance = &job.scene.instances[hit.instance as usize];
     let mesh = &job.scene.meshes[instance.mesh];
     if !SMOOTH || mesh.normals.is_empty() {
@@ -30,9 +35,30 @@ fn normal<const SMOOTH: bool, const TURNED: bool>(job: &Job, ray: &Ray, hit: &Hi
     smooth * if smooth.dot(ray.dir) > 0.0 { -1.0 } else { 1.0 }
 }
 
-/// The same for a scene of which nothing is known.
-pub(super) fn shading_normal(job: &Job, ray: &Ray, hit: &Hit) -> Vec3 {
-    normal::<true, true>(job, ray, hit)
+/// A normal towards the viewer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Facing {
+    /// Of unit length.
+    pub normal: Vec3,
+    /// Whether the surface itself faces the other way: it is seen from behind.
+    pub turned: bool,
+}
+
+/// The normal towards the viewer at a point that was hit, in a scene of which nothing is known.
+pub(super) fn facing_normal(job: &Job, ray: &Ray, hit: &Hit, point: &Point) -> Facing {
+    let normal = bent_by_vertices::<true, true>(job, ray, hit, point.normal);
+    let instance = &job.scene.instances[hit.instance as usize];
+    let mesh = &job.scene.meshes[instance.mesh];
+    let own = if mesh.normals.is_empty() {
+        let [a, b, c] = job.accel.geometry().corners_of(hit.instance, hit.primitive);
+        // What mirrors a mesh turns the order of its corners.
+        let mirrors = instance.world_from_object.matrix3.determinant() < 0.0;
+        (b - a).cross(c - a) * if mirrors { -1.0 } else { 1.0 }
+    } else {
+        let [i, j, k] = mesh.triangles[hit.primitive as usize].map(|i| mesh.normals[i as usize]);
+        cofactors(&instance.world_from_object.matrix3) * (i * (1.0 - hit.u - hit.v) + j * hit.u + k * hit.v)
+    };
+    Facing { normal, turned: own.dot(normal) < 0.0 }
 }
 
 /// What normals are turned by: the inverse transpose but for its length and sign, which are settled later, and there for
@@ -96,9 +122,9 @@ fn opaque(color: Vec3) -> [f32; 4] {
 }
 
 /// The ray that asks whether a point sees the sky, as far as a fifth of the scene's extent.
-pub fn occlusion_ray(geometry: &Geometry, ray: &Ray, hit: &Hit, sampler: &Sampler) -> Ray {
+pub fn occlusion_ray(geometry: &Geometry, ray: &Ray, hit: &Hit, numbers: Vec2) -> Ray {
     let point = Point::of(geometry, ray, hit);
-    let dir = cosine_direction(point.normal, sampler.pair(1));
+    let dir = cosine_direction(point.normal, numbers);
     let reach = geometry.world_bounds().size().max_element() * 0.2;
     Ray { tmax: reach, ..point.ray(geometry, dir) }
 }

@@ -17,6 +17,8 @@ pub struct Spread {
     deviations: f32,
     /// Of those, the ones that hit something.
     hits: u32,
+    /// Squared deviations of linear red, green and blue together.
+    linear: f32,
 }
 
 /// Samples that each pixel gets in any case.
@@ -25,14 +27,26 @@ pub const LEAST: u32 = 16;
 const SURE: f32 = 0.5 / 255.0;
 
 impl Spread {
-    /// Adds a sample: linear colour, and 1 where something is hit.
-    pub fn add(&mut self, [r, g, b, hit]: [f32; 4]) {
+    /// Adds a sample: linear colour, and 1 where something is hit; `before` is the sum of those before it.
+    pub fn add(&mut self, [r, g, b, hit]: [f32; 4], before: [f32; 4]) {
+        let n = self.n as f32;
+        for (x, sum) in [r, g, b].into_iter().zip(before) {
+            // From the mean before and from the one after: both are fractions of the same difference.
+            let from_mean = if self.n == 0 { 0.0 } else { x - sum / n };
+            self.linear += from_mean * from_mean * (n / (n + 1.0));
+        }
         let shown = encode(0.2126 * r + 0.7152 * g + 0.0722 * b);
         self.n += 1;
         self.hits += u32::from(hit > 0.0);
         let before = shown - self.mean;
         self.mean += before / self.n as f32;
         self.deviations += before * (shown - self.mean);
+    }
+
+    /// The squared standard error of the mean: of linear red, green and blue together.
+    pub fn error_squared(&self) -> f64 {
+        let n = f64::from(self.n);
+        if self.n < 2 { 0.0 } else { f64::from(self.linear) / (n * (n - 1.0)) }
     }
 
     /// Whether more samples would change nothing that is seen. So it is of a pixel that gets none.
@@ -67,8 +81,24 @@ mod tests {
 
     fn of(samples: &[[f32; 4]]) -> Spread {
         let mut spread = Spread::default();
-        samples.iter().for_each(|sample| spread.add(*sample));
+        let mut sum = [0.0; 4];
+        for sample in samples {
+            spread.add(*sample, sum);
+            (0..4).for_each(|k| sum[k] += sample[k]);
+        }
         spread
+    }
+
+    #[test]
+    fn the_error_is_that_of_the_mean() {
+        let samples = [[1.0, 2.0, 0.0, 1.0], [3.0, 2.0, 0.5, 1.0], [2.0, 8.0, 0.25, 1.0], [4.0, 0.0, 0.75, 1.0]];
+        let variance = |k: usize| {
+            let mean = samples.iter().map(|s| f64::from(s[k])).sum::<f64>() / 4.0;
+            samples.iter().map(|s| (f64::from(s[k]) - mean).powi(2)).sum::<f64>() / 3.0
+        };
+        let expected = (variance(0) + variance(1) + variance(2)) / 4.0;
+        assert!((of(&samples).error_squared() - expected).abs() < 1e-5 * expected);
+        assert_eq!((of(&samples[..1]).error_squared(), of(&[]).error_squared()), (0.0, 0.0));
     }
 
     #[test]

@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use super::film::Band;
 use super::light::Sources;
-use super::sampler::{Sampler, in_pixel, on_screen};
+use super::sampler::{Sampling, on_screen};
 use super::shade::{occlusion_ray, shader};
-use super::{Film, Looks, Mode};
+use super::work::{Watch, Work};
+use super::{Film, Looks, Mode, Transport};
 use crate::accel::probe::Counts;
 use crate::accel::{self, Accel, Hit};
 use crate::geometry::Ray;
@@ -30,6 +31,10 @@ pub struct Job {
     pub mode: Mode,
     /// Textures, and where surfaces let rays pass.
     pub looks: Arc<Looks>,
+    /// Which numbers samples are made of.
+    pub sampling: Sampling,
+    /// How far light is followed.
+    pub transport: Transport,
 }
 
 impl std::fmt::Debug for Job {
@@ -45,6 +50,11 @@ const ROWS: usize = 4;
 type Pixels = Vec<(u32, u32)>;
 
 impl Job {
+    /// With independent samples, and light followed as usual.
+    pub fn new(scene: Arc<Scene>, accel: Arc<dyn Accel>, camera: Camera, mode: Mode, looks: Arc<Looks>) -> Self {
+        Self { scene, accel, camera, mode, looks, sampling: Sampling::default(), transport: Transport::default() }
+    }
+
     /// The camera rays of a sample, row by row.
     pub fn camera_rays(&self, width: u32, height: u32, rows: Range<u32>, sample: u32) -> Vec<Ray> {
         self.rays_of(rows.flat_map(|y| (0..width).map(move |x| (x, y))), [width, height], sample)
@@ -54,7 +64,10 @@ impl Job {
         let frame = self.camera.frame();
         let size = Vec2::new(width as f32, height as f32);
         let ray = |(x, y): (u32, u32)| {
-            let at = Vec2::new(x as f32, y as f32) + in_pixel(x, y, sample);
+            // The first sample is in the pixel's middle, where nothing is made of means.
+            let middle = sample == 0 && self.mode != Mode::Path;
+            let within = if middle { Vec2::splat(0.5) } else { self.sampling.of(x, y, sample).pair(0) };
+            let at = Vec2::new(x as f32, y as f32) + within;
             self.camera.ray(&frame, on_screen(at, size), size.x / size.y)
         };
         pixels.map(ray).collect()
@@ -77,12 +90,12 @@ impl Job {
         [span(low.x, high.x, width), span(-high.y, -low.y, height)]
     }
 
-    /// Adds one sample to every pixel, and returns the number of rays traced: none for pixels that cannot see the scene, or
-    /// have converged where the film asks for that ([`Film::converging`]).
+    /// Adds one sample to every pixel but those that cannot see the scene, or have converged where the film asks for that
+    /// ([`Film::converging`]).
     ///
     /// # Errors
     /// [`Cancelled`]; the film then holds a part of the pass and is of no use.
-    pub fn pass(&self, film: &mut Film, pool: &Pool, cancel: &Cancel) -> Result<u64, Cancelled> {
+    pub fn pass(&self, film: &mut Film, pool: &Pool, cancel: &Cancel) -> Result<Work, Cancelled> {
         let (width, height, sample) = (film.width(), film.height(), film.samples());
         let [columns, seen] = self.seen(width, height);
         let converged = pool.run(|| film.converged());
@@ -97,13 +110,13 @@ impl Job {
             let rows = first.max(seen.start)..height.min(first + ROWS as u32).min(seen.end);
             let all = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
             let pixels: Pixels = all.filter(goes_on).collect();
-            let rays = self.band(band, first, (&pixels, sources.as_deref()), [width, height], sample, cancel)?;
-            Ok((rays, pixels.len()))
+            let work = self.band(band, first, (&pixels, sources.as_deref()), [width, height], sample, cancel)?;
+            Ok((work, pixels.len()))
         };
-        let sum = |a: (u64, usize), b: (u64, usize)| Ok((a.0 + b.0, a.1 + b.1));
-        let (rays, sampled) = pool.run(|| bands.into_par_iter().map(band).try_reduce(|| (0, 0), sum))?;
+        let sum = |a: (Work, usize), b: (Work, usize)| Ok((a.0 + b.0, a.1 + b.1));
+        let (work, sampled) = pool.run(|| bands.into_par_iter().map(band).try_reduce(Default::default, sum))?;
         film.pass_done(sampled);
-        Ok(rays)
+        Ok(work)
     }
 
     /// Adds a sample to some pixels of a band that begins with row `first`.
@@ -115,33 +128,41 @@ impl Job {
         [width, height]: [u32; 2],
         sample: u32,
         cancel: &Cancel,
-    ) -> Result<u64, Cancelled> {
+    ) -> Result<Work, Cancelled> {
         cancel.check()?;
+        let (mut work, mut watch) = (Work::default(), Watch::start());
         let place = |(x, y): &(u32, u32)| ((y - first) * width + x) as usize;
         let rays = self.rays_of(pixels.iter().copied(), [width, height], sample);
         let mut samples = vec![[0.0; 4]; rays.len()];
         let mut hits = vec![None; rays.len()];
+        work.rays = rays.len() as u64;
+        watch.lap(&mut work.rest);
         if self.mode.is_heat() {
             self.watch(&rays, &mut hits, &mut samples, cancel)?;
         } else {
             self.trace(&rays, accel::Mode::Closest, &mut hits, cancel)?;
+        }
+        watch.lap(&mut work.tracing);
+        if !self.mode.is_heat() {
             self.shade(&rays, &hits, &mut samples);
         }
-        let mut traced = rays.len() as u64;
+        let sampler = |i: usize| self.sampling.of(pixels[i].0, pixels[i].1, sample);
         if self.mode == Mode::Ao {
-            let sampler = |i: usize| Sampler::new(pixels[i].0, pixels[i].1, sample);
-            traced += self.occlude(&rays, &hits, sampler, &mut samples, cancel)?;
+            work.rays += self.occlude(&rays, &hits, |i| sampler(i).pair(1), &mut samples, cancel)?;
+            watch.lap(&mut work.tracing);
         }
         if let Some(sources) = sources {
-            let sampler = |i: usize| Sampler::new(pixels[i].0, pixels[i].1, sample);
-            traced += self.follow(sources, rays.clone(), hits.clone(), sampler, &mut samples, cancel)?;
+            let first = (rays.clone(), hits.clone());
+            self.follow(sources, first, sampler, &mut samples, (&mut work, &mut watch), cancel)?;
         }
+        watch.lap(&mut work.shading);
         let Band { sums, depth, spreads } = band;
+        if let Some(spreads) = spreads {
+            let pixels = pixels.iter().map(place).zip(&samples);
+            pixels.for_each(|(at, sample)| spreads[at].add(*sample, sums[at]));
+        }
         for (at, sample) in pixels.iter().map(place).zip(&samples) {
             (0..4).for_each(|k| sums[at][k] += sample[k]);
-        }
-        if let Some(spreads) = spreads {
-            pixels.iter().map(place).zip(&samples).for_each(|(at, sample)| spreads[at].add(*sample));
         }
         if let Some(depth) = depth {
             // t is depth along the view: the camera's rays have unit length along it.
@@ -149,7 +170,8 @@ impl Job {
             let scaled = |hit: &Option<Hit>| hit.map_or(f32::INFINITY, |h| narrow(f64::from(h.t) * scale));
             pixels.iter().map(place).zip(&hits).for_each(|(at, hit)| depth[at] = scaled(hit));
         }
-        Ok(traced)
+        watch.lap(&mut work.rest);
+        Ok(work)
     }
 
     /// Finds what rays hit; where surfaces have holes they pass.
@@ -187,12 +209,12 @@ impl Job {
         &self,
         rays: &[Ray],
         hits: &[Option<Hit>],
-        sampler: impl Fn(usize) -> Sampler,
+        numbers: impl Fn(usize) -> Vec2,
         samples: &mut [[f32; 4]],
         cancel: &Cancel,
     ) -> Result<u64, Cancelled> {
         let geometry = self.accel.geometry();
-        let open = |(i, hit): (usize, &Option<Hit>)| hit.map(|hit| (i, occlusion_ray(geometry, &rays[i], &hit, &sampler(i))));
+        let open = |(i, hit): (usize, &Option<Hit>)| hit.map(|hit| (i, occlusion_ray(geometry, &rays[i], &hit, numbers(i))));
         let (at, probes): (Vec<usize>, Vec<Ray>) = hits.iter().enumerate().filter_map(open).unzip();
         let mut blocked = vec![None; probes.len()];
         self.trace(&probes, accel::Mode::Any, &mut blocked, cancel)?;

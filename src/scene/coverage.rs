@@ -104,7 +104,9 @@ impl<'a> Surface<'a> {
         color
     }
 
-    fn uv(&self, corners: [u32; 3], u: f32, v: f32) -> Vec2 {
+    /// The mesh's texture coordinates at a point of a triangle, of which it must have some.
+    #[inline]
+    pub(super) fn uv(&self, corners: [u32; 3], u: f32, v: f32) -> Vec2 {
         let [a, b, c] = corners.map(|i| self.mesh.uvs[i as usize]);
         Vec2::new(between(a.x, b.x, c.x, u, v), between(a.y, b.y, c.y, u, v))
     }

@@ -3,6 +3,7 @@
 use glam::Affine3A;
 
 use super::needs::{material_of, places, shines};
+use super::texture::color_images;
 use super::{Feature, Mesh, Needs, Scene};
 
 /// A feature of a scene, and why it is used or left out.
@@ -31,13 +32,15 @@ struct Facts {
     normals: usize,
     colors: usize,
     mapped: usize,
+    color_images: usize,
+    of_surfaces: usize,
     maybe_holes: usize,
     shining: usize,
+    lights: usize,
     clear: usize,
     instances: usize,
     repeated: (usize, u64),
     turned: usize,
-    images: usize,
 }
 
 impl Facts {
@@ -51,13 +54,15 @@ impl Facts {
             normals: count(|mesh| !mesh.normals.is_empty()),
             colors: count(|mesh| !mesh.colors.is_empty()),
             mapped: count(|mesh| !mesh.uvs.is_empty()),
+            color_images: color_images(scene),
+            of_surfaces: placed().filter(|mesh| !mesh.uvs.is_empty() && material_of(scene, mesh).has_surface_maps()).count(),
             maybe_holes: placed().filter(|mesh| material_of(scene, mesh).alpha != super::Alpha::Opaque).count(),
             shining: placed().filter(|mesh| shines(material_of(scene, mesh))).count(),
+            lights: scene.lights.len(),
             clear: placed().filter(|mesh| material_of(scene, mesh).transmission > 0.0).count(),
             instances: scene.instances.len(),
             repeated: (many().count(), many().map(|places| u64::from(*places)).sum()),
             turned: scene.instances.iter().filter(|i| i.world_from_object != Affine3A::IDENTITY).count(),
-            images: scene.images.len(),
         }
     }
 
@@ -72,13 +77,17 @@ impl Facts {
             (Feature::Uvs, true) => of_meshes(self.mapped, "Images are looked up by texture coordinates"),
             (Feature::Uvs, false) => "No material reads an image, so texture coordinates are not kept.".into(),
             (Feature::ColorMaps, true) => {
-                format!("Surfaces take their colour from images; colour and opacity together need {}.", self.images)
+                format!("Surfaces take their colour from images; colour and opacity together need {}.", self.color_images)
             }
             (Feature::ColorMaps, false) => "No surface takes its colour from an image.".into(),
             (Feature::AlphaMaps, true) => {
                 of_meshes(self.maybe_holes, "Surfaces take their opacity from images, among those that may have holes")
             }
             (Feature::AlphaMaps, false) => "No surface takes its opacity from an image.".into(),
+            (Feature::SurfaceMaps, true) => {
+                of_meshes(self.of_surfaces, "Images say how metallic, rough or clear surfaces are, or which way they face")
+            }
+            (Feature::SurfaceMaps, false) => "No image says how metallic, rough, clear or uneven a surface is.".into(),
             (Feature::AlphaTest, true) => {
                 of_meshes(self.maybe_holes, "Some may have holes, so that each hit is asked whether it counts")
             }
@@ -87,7 +96,10 @@ impl Facts {
             }
             (Feature::AlphaTest, false) => "All surfaces are solid: every hit counts.".into(),
             (Feature::Emission, true) => of_meshes(self.shining, "Paths of light begin at surfaces that shine"),
+            (Feature::Emission, false) if self.lights > 0 => "No surface shines.".into(),
             (Feature::Emission, false) => "No surface shines: paths of light begin at a sky.".into(),
+            (Feature::Lights, true) => format!("The file has lights of its own that are no surfaces: {}.", self.lights),
+            (Feature::Lights, false) => "The file has no lights but surfaces that may shine.".into(),
             (Feature::Transmission, true) => of_meshes(self.clear, "Surfaces let paths of light through"),
             (Feature::Transmission, false) => "No surface lets light through.".into(),
             (Feature::DoubleSided, _) => "Rays hit both sides of every triangle, and both are shaded alike.".into(),

@@ -6,11 +6,14 @@ pub mod builtin;
 mod camera;
 mod camera_spec;
 pub mod coverage;
+mod environment;
 mod error;
 mod extremes;
 mod findings;
+mod finish;
 mod first_view;
 mod geometry;
+mod light;
 pub mod load;
 mod material;
 mod mesh;
@@ -23,11 +26,14 @@ mod whose;
 
 pub use camera::{Camera, Frame, Projection};
 pub use camera_spec::CameraSpec;
+pub use environment::Environment;
 pub use error::{LoadError, Reason};
 pub use findings::Finding;
+pub use finish::{Finish, Finished};
 pub use first_view::{FirstView, StoredCamera};
 pub use geometry::{Counts, Geometry, PrimRef};
-pub use material::{Alpha, AlphaTexture, Material};
+pub use light::{Light, LightKind};
+pub use material::{Alpha, Material, NormalTexture, ValueTexture};
 pub use mesh::{Instance, Mesh};
 pub use needs::{Feature, Keep, Needs, SceneBytes};
 pub use placed::{Place, Placed};
@@ -50,6 +56,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// The images that materials use, not yet decoded; a material refers to them by index.
     pub images: Vec<texture::Image>,
+    /// Lights that are no surfaces, in node order.
+    pub lights: Vec<Light>,
     /// The direction that is up: what the orbiting camera keeps upright.
     pub up: Vec3,
     /// A view that suits the model; without one the whole model is framed.

@@ -5,8 +5,8 @@
 use glam::{Affine3A, Vec2, Vec3};
 
 use super::coverage::Surface;
-use super::texture::{Image, TextureUse, Textures};
-use super::{Geometry, LoadCx, Material, Mesh, Reason, Scene};
+use super::texture::{Channel, Image, TextureUse, Textures};
+use super::{Geometry, LoadCx, Material, Mesh, Reason, Scene, ValueTexture};
 
 /// Something that a scene may use or leave out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,10 +21,14 @@ pub enum Feature {
     ColorMaps,
     /// Images that surfaces take their opacity from.
     AlphaMaps,
+    /// Images that say how metallic, rough or clear surfaces are, or which way they face.
+    SurfaceMaps,
     /// Hits that are asked whether the surface is there at all.
     AlphaTest,
     /// Surfaces that shine.
     Emission,
+    /// Lights of the file that are no surfaces.
+    Lights,
     /// Surfaces that let light through.
     Transmission,
     /// Whether the back of a surface is seen.
@@ -55,14 +59,16 @@ pub enum Keep {
 
 impl Feature {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::Normals,
         Self::VertexColors,
         Self::Uvs,
         Self::ColorMaps,
         Self::AlphaMaps,
+        Self::SurfaceMaps,
         Self::AlphaTest,
         Self::Emission,
+        Self::Lights,
         Self::Transmission,
         Self::DoubleSided,
         Self::Instancing,
@@ -81,8 +87,10 @@ impl Feature {
             Self::Uvs => "uvs",
             Self::ColorMaps => "color-maps",
             Self::AlphaMaps => "alpha-maps",
+            Self::SurfaceMaps => "surface-maps",
             Self::AlphaTest => "alpha-test",
             Self::Emission => "emission",
+            Self::Lights => "lights",
             Self::Transmission => "transmission",
             Self::DoubleSided => "double-sided",
             Self::Instancing => "instancing",
@@ -102,8 +110,10 @@ impl Feature {
             Self::Uvs => "Texture coordinates",
             Self::ColorMaps => "Colour images",
             Self::AlphaMaps => "Opacity images",
+            Self::SurfaceMaps => "Surface maps",
             Self::AlphaTest => "Test for holes",
             Self::Emission => "Emission",
+            Self::Lights => "Lights",
             Self::Transmission => "Transmission",
             Self::DoubleSided => "Two-sidedness",
             Self::Instancing => "Upper level",
@@ -156,6 +166,7 @@ impl Needs {
                 (Feature::Uvs, mapped),
                 (Feature::ColorMaps, colored_by.is_some()),
                 (Feature::AlphaMaps, alpha_by.is_some()),
+                (Feature::SurfaceMaps, mapped && material.has_surface_maps()),
                 (Feature::AlphaTest, surface.needs_test() || waits),
                 (Feature::Instancing, places[number] > 1),
                 (Feature::Emission, shines(material)),
@@ -168,6 +179,9 @@ impl Needs {
         let turned = |i: &super::Instance| i.world_from_object != Affine3A::IDENTITY && !scene.meshes[i.mesh].normals.is_empty();
         if scene.instances.iter().any(turned) {
             needs = needs.with(Feature::Transforms);
+        }
+        if !scene.lights.is_empty() {
+            needs = needs.with(Feature::Lights);
         }
         needs.with(Feature::Indices)
     }
@@ -218,7 +232,7 @@ pub struct SceneBytes {
     pub uvs: u64,
     /// Of meshes that stand nowhere.
     pub unplaced: u64,
-    /// Of materials, instances, and images as they are stored.
+    /// Of materials, instances, lights, and images as they are stored.
     pub rest: u64,
 }
 
@@ -247,7 +261,8 @@ impl Scene {
             }
         }
         let lists = size_of_val(&self.meshes[..]) + size_of_val(&self.instances[..]) + size_of_val(&self.materials[..]);
-        bytes.rest = lists as u64 + self.images.iter().map(Image::bytes).sum::<u64>();
+        let lights = size_of_val(&self.lights[..]);
+        bytes.rest = (lists + lights) as u64 + self.images.iter().map(Image::bytes).sum::<u64>();
         bytes
     }
 
@@ -298,86 +313,14 @@ impl Scene {
         }
         self.materials.push(Material::PLAIN);
         for material in &mut self.materials {
-            material.base_color_texture.get_or_insert(TextureUse { image: white, ..TextureUse::default() });
+            let texture = TextureUse { image: white, ..TextureUse::default() };
+            material.base_color_texture.get_or_insert(texture);
+            for map in [&mut material.metallic_texture, &mut material.roughness_texture, &mut material.transmission_texture] {
+                map.get_or_insert(ValueTexture { texture, channel: Channel::Red });
+            }
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::{Alpha, Instance};
-
-    fn scene() -> Scene {
-        let mesh = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles: vec![[0, 1, 2]], ..Mesh::default() };
-        Scene { meshes: vec![mesh.clone(), mesh], instances: vec![Instance::identity(0)], ..Scene::default() }
-    }
-
-    fn needs(scene: &Scene) -> Needs {
-        Needs::of(scene, &Textures::none())
-    }
-
-    #[test]
-    fn a_plain_scene_needs_nothing_but_indices() {
-        assert_eq!(needs(&scene()), Needs::default().with(Feature::Indices));
-    }
-
-    #[test]
-    fn what_only_an_unplaced_mesh_has_is_not_needed() {
-        let mut scene = scene();
-        scene.meshes[1].normals = vec![Vec3::Z; 3];
-        assert!(!needs(&scene).has(Feature::Normals));
-        scene.instances.push(Instance::identity(1));
-        assert!(needs(&scene).has(Feature::Normals) && !needs(&scene).has(Feature::Transforms));
-        scene.instances[1].world_from_object = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
-        assert!(needs(&scene).has(Feature::Transforms) && !needs(&scene).has(Feature::Instancing));
-        scene.instances.push(Instance::identity(1));
-        assert!(needs(&scene).has(Feature::Instancing));
-    }
-
-    #[test]
-    fn holes_are_needed_only_where_opacity_is_short_of_what_is_asked() {
-        let mut scene = scene();
-        let color = |alpha: f32| Material { base_color: [1.0, 1.0, 1.0, alpha], alpha: Alpha::Blend, ..Material::PLAIN };
-        scene.meshes[0].material = Some(0);
-        scene.materials = vec![color(1.0)];
-        assert!(!needs(&scene).has(Feature::AlphaTest));
-        scene.materials = vec![color(0.5)];
-        assert!(needs(&scene).has(Feature::AlphaTest));
-    }
-
-    #[test]
-    fn white_colours_and_coordinates_that_nothing_reads_are_dropped() {
-        let mut scene = scene();
-        scene.meshes[0].colors = vec![WHITE; 3];
-        scene.meshes[0].uvs = vec![Vec2::ZERO; 3];
-        scene.meshes[1].colors = vec![WHITE, WHITE, [1.0, 1.0, 1.0, 0.5]];
-        drop_idle(&mut scene);
-        assert!(scene.meshes[0].colors.is_empty() && scene.meshes[0].uvs.is_empty() && scene.meshes[1].colors.len() == 3);
-    }
-
-    #[test]
-    fn every_feature_has_a_sentence_and_a_name_of_its_own() {
-        for set in [Needs::default(), Needs::ALL] {
-            let findings = set.findings(&scene());
-            assert_eq!(findings.len(), Feature::ALL.len());
-            assert!(findings.iter().all(|finding| finding.why.ends_with('.') && finding.used == set.has(finding.feature)));
-        }
-        for (i, feature) in Feature::ALL.into_iter().enumerate() {
-            assert!(Feature::ALL[..i].iter().all(|other| other.id() != feature.id() && other.name() != feature.name()));
-        }
-    }
-
-    #[test]
-    fn bytes_are_those_of_the_lists() {
-        let mut scene = scene();
-        let before = scene.bytes();
-        assert_eq!((before.corners, before.unplaced, before.normals), (48, 48, 0));
-        scene.fill_in();
-        let filled = scene.bytes();
-        assert_eq!((filled.normals, filled.colors, filled.uvs, filled.unplaced), (36, 48, 24, 48 + 36 + 48 + 24));
-        assert!(filled.total() > before.total());
-        scene.give_up_corners();
-        assert_eq!(scene.bytes().corners, 12, "the indices of what vertices have");
-    }
-}
+mod tests;

@@ -23,6 +23,7 @@ fn scene_without_meshes(scene: &Scene) -> Scene {
         instances: scene.instances.clone(),
         materials: scene.materials.clone(),
         images: scene.images.clone(),
+        lights: scene.lights.clone(),
         up: scene.up,
         camera: scene.camera,
         warnings: Vec::new(),

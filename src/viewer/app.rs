@@ -135,6 +135,7 @@ impl App {
                 panels::statistics::show(ui, state, commands);
                 panels::selection::show(ui, state, commands);
             }
+            Workspace::Compare => panels::error_side::show(ui, state, commands),
             Workspace::Check => panels::check::show(ui, state, commands),
         };
         let narrow = ui.available_width() < theme::FOLD_BELOW;
@@ -155,6 +156,7 @@ impl App {
         } else {
             let (sign, name) = match workspace {
                 Workspace::View => ("Σ", "Statistics"),
+                Workspace::Compare => ("±", "Errors"),
                 Workspace::Check => ("?", "Findings"),
             };
             Panel::right(id("strip")).exact_size(theme::STRIP).resizable(false).show(ui, |ui| {
@@ -172,6 +174,7 @@ impl App {
     fn centre(&mut self, ui: &mut Ui) {
         let (below, height) = match self.state.settings.workspace {
             Workspace::View => ("timings", theme::BOTTOM_PANEL),
+            Workspace::Compare => ("errors", theme::ERROR_PANEL),
             Workspace::Check => ("matrix", theme::MATRIX_PANEL),
         };
         let id = self.panel(below);
@@ -179,6 +182,7 @@ impl App {
         let mut size_px = state.size_px;
         Panel::bottom(id).default_size(height).resizable(true).show(ui, |ui| match state.settings.workspace {
             Workspace::View => panels::timings::show(ui, state, commands),
+            Workspace::Compare => panels::errors::show(ui, state, commands),
             Workspace::Check => panels::stability::show(ui, state, commands),
         });
         CentralPanel::no_frame().show(ui, |ui| {

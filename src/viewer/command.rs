@@ -4,9 +4,11 @@
 use super::checks::Cell;
 use super::model::Instances;
 use super::settings::{Navigation, OverlaySettings, ThemeChoice, Workspace};
+use super::tradeoffs::{Goodness, Miss, Plot};
 use crate::accel::params::ParamValues;
 use crate::geometry::tri::TestKind;
-use crate::render::{Mode, Range};
+use crate::render::sampler::SamplerKind;
+use crate::render::{Mode, Range, Tone};
 use crate::scene::Camera;
 use glam::Vec2;
 
@@ -81,6 +83,29 @@ pub enum Command {
     CancelCheck,
     /// Draw the rays that one of the checked structures does not answer exactly, or none.
     MarkModel(Option<usize>),
+    /// How light becomes colour.
+    Tone(Tone),
+    /// The numbers that samples are made of.
+    Sampler(SamplerKind),
+    /// Make a reference that the errors of the present view are measured against.
+    MakeReference,
+    /// Stop that.
+    CancelReference,
+    /// Show the picture of a point of a curve of errors, by curve and point, or the present one again; and whether its
+    /// difference from the reference.
+    Shot(Option<(usize, usize)>, bool),
+    /// Figures of errors in a table, or in plots.
+    ErrorsAsTable(bool),
+    /// Another plot of the Compare workspace.
+    ErrorPlot(Plot),
+    /// What of intersections is drawn.
+    Miss(Miss),
+    /// What of structures is drawn.
+    Goodness(Goodness),
+    /// Measure every structure, builder and triangle test on the present view.
+    MeasureTradeoffs,
+    /// Stop that.
+    CancelTradeoffs,
     /// Put away the message.
     Dismiss,
     /// The memory budget in MiB, or half of the machine.

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
-use crate::render::Mode;
+use crate::render::sampler::SamplerKind;
+use crate::render::{Mode, Tone};
 
 /// Everything that is saved.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -23,6 +24,10 @@ pub struct Settings {
     pub mode: Mode,
     /// Samples after which to rest.
     pub max_samples: u32,
+    /// How light becomes colour.
+    pub tone: Tone,
+    /// The numbers that samples are made of.
+    pub sampler: SamplerKind,
     /// Boxes and planes.
     pub overlay: OverlaySettings,
     /// What stands around the view.
@@ -51,6 +56,8 @@ impl Default for Settings {
             test: TestKind::default(),
             mode: Mode::default(),
             max_samples: 4096,
+            tone: Tone::default(),
+            sampler: SamplerKind::default(),
             overlay: OverlaySettings::default(),
             workspace: Workspace::default(),
             theme: ThemeChoice::default(),
@@ -107,26 +114,35 @@ pub enum Workspace {
     /// Statistics and timings.
     #[default]
     View,
+    /// The picture's error against what it costs.
+    Compare,
     /// The stability lab, and what is known to be wrong with the model.
     Check,
 }
 
 impl Workspace {
     /// All, in the order of their tabs.
-    pub const ALL: [Self; 2] = [Self::View, Self::Check];
+    pub const ALL: [Self; 3] = [Self::View, Self::Compare, Self::Check];
 
     /// The name on the tab.
     pub const fn name(self) -> &'static str {
         match self {
             Self::View => "View",
+            Self::Compare => "Compare",
             Self::Check => "Check",
         }
+    }
+
+    /// Whether curves of the picture's error stand in it.
+    pub const fn shows_errors(self) -> bool {
+        matches!(self, Self::Compare)
     }
 
     /// What it is for, in a sentence.
     pub const fn help(self) -> &'static str {
         match self {
             Self::View => "Statistics of the structure, and timings of all of them.",
+            Self::Compare => "The error of the path traced picture, against samples and against seconds.",
             Self::Check => "Right answers: the stability lab, and a check of the open model.",
         }
     }

@@ -38,6 +38,8 @@ pub const RIGHT_PANEL: f32 = 280.0;
 /// The height of the timings below the viewport.
 pub const BOTTOM_PANEL: f32 = 184.0;
 /// The height of the matrix below the viewport.
+pub const ERROR_PANEL: f32 = 280.0;
+/// Of the stability lab.
 pub const MATRIX_PANEL: f32 = 320.0;
 /// The width of the names of cases beside the matrix.
 pub const CASE_NAME: f32 = 28.0 * GRID;

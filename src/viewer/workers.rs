@@ -10,19 +10,23 @@ use super::kept::{Built, Key};
 use super::model::{self, Instances, Model};
 use super::overlay::{self, Collected, Wanted};
 use super::pick::{self, Picked};
+use super::shown;
 use crate::accel::registry;
 use crate::accel::stats::{SahWeights, Stats};
 use crate::accel::{Accel, BuildCx, BuildError, Cell};
 use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::job::Job;
+use crate::lab::converge::Reference;
 use crate::lab::needs::{Kept, NeedsReport};
 use crate::lab::stability::{self, CaseRow, cases};
+use crate::lab::tradeoffs::{TradeoffRow, Tradeoffs, Variant};
 use crate::lab::{
-    self, CheckError, Checked, Contestant, Costs, Enough, FitOptions, MeasureOptions, ModelCheck, Quality, QualityOptions,
-    RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure, measure_with_raster, sah_curves,
+    self, CheckError, Checked, Contestant, Costs, Enough, FitOptions, ImageErrors, MeasureOptions, ModelCheck, Quality,
+    QualityOptions, RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure, measure_with_raster, sah_curves,
 };
-use crate::render::{self, Looks};
+use crate::render::{self, Looks, Picture, Shot, Tone};
+use crate::scene::texture::Detail;
 use crate::scene::{Camera, Finding, Geometry, Keep, LoadCx, LoadError, Scene};
 use crate::task::{Budget, Cancel, Cancelled, Pool, Progress};
 
@@ -138,11 +142,11 @@ pub fn predict(shared: &Shared, built: &Built, stats: Arc<Stats>) -> std::io::Re
 pub type Decoding = Job<Result<(Looks, Vec<Finding>), Cancelled>>;
 
 /// Starts decoding the textures of a scene.
-pub fn decode(shared: &Shared, scene: Arc<Scene>) -> std::io::Result<Decoding> {
+pub fn decode(shared: &Shared, scene: Arc<Scene>, detail: Detail) -> std::io::Result<Decoding> {
     let Shared { pool, budget, .. } = shared.clone();
     Job::spawn("textures", shared.waker(), move |cancel, progress| {
         let cx = LoadCx::new(cancel.clone(), progress.clone(), budget, pool);
-        let looks = Looks::decode(&scene, &cx)?;
+        let looks = Looks::decode(&scene, detail, &cx)?;
         let needs = looks.needs().findings(&scene);
         Ok((looks, needs))
     })
@@ -166,7 +170,7 @@ pub fn needs(
         pause.wait();
         let cx = LoadCx { keep: Keep::All, ..LoadCx::new(cancel.clone(), progress.clone(), budget.clone(), pool.clone()) };
         let forced = model::load(&kept.scene.name, 0, Instances::Kept, &cx).map_err(|why| why.to_string())?;
-        let looks = Arc::new(Looks::decode(&forced.scene, &cx).map_err(|why| why.to_string())?);
+        let looks = Arc::new(Looks::decode(&forced.scene, Detail::Colors, &cx).map_err(|why| why.to_string())?);
         let build_cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
         let accel = build_now(key, &forced.geometry, &build_cx).map_err(|why| why.to_string())?.accel;
         let forced = Kept { scene: forced.scene, geometry: forced.geometry, accel, looks };
@@ -275,6 +279,90 @@ pub fn measure_all(shared: &Shared, plan: Plan, pause: render::progressive::Paus
         let options = FitOptions { cap_secs: 2.0, ..FitOptions::default() };
         measured.costs = fit_costs(&contestants, &[&rays, &lines], &options, &pool, cancel, progress)?;
         Ok(measured)
+    })
+}
+
+/// A reference on its way.
+pub type Referring = Job<Result<Reference, Cancelled>>;
+
+/// Starts a reference of a view, of so many samples; the renderer is kept from running meanwhile.
+pub fn reference(
+    shared: &Shared,
+    view: render::Job,
+    size_px: [u32; 2],
+    spp: u32,
+    pause: render::progressive::Pause,
+) -> std::io::Result<Referring> {
+    let pool = shared.pool.clone();
+    Job::spawn("reference", shared.waker(), move |cancel, progress| {
+        pause.wait();
+        Reference::render(&view, size_px, spp, (&pool, cancel, progress))
+    })
+}
+
+/// Errors of points, by curve and point, on their way.
+pub type Erring = Job<Vec<(usize, usize, ImageErrors)>>;
+
+/// Starts measuring points against a reference.
+pub fn errors(shared: &Shared, points: Vec<(usize, usize, Arc<Shot>)>, reference: Arc<Reference>) -> std::io::Result<Erring> {
+    Job::spawn("errors", shared.waker(), move |cancel, _| {
+        let of = |(curve, point, shot): (usize, usize, Arc<Shot>)| {
+            let light = shot.light.as_ref().filter(|_| !cancel.is_cancelled())?;
+            Some((curve, point, ImageErrors::of(light, &reference.pixels)))
+        };
+        points.into_iter().filter_map(of).collect()
+    })
+}
+
+/// A picture of what was kept, on its way.
+pub type Developing = Job<Result<Picture, Cancelled>>;
+
+/// Starts developing what was kept; beside a reference, its difference from that. Its depths are those of the present picture.
+pub fn develop(
+    shared: &Shared,
+    shot: Arc<Shot>,
+    reference: Option<Arc<Reference>>,
+    present: Arc<Picture>,
+    tone: Tone,
+) -> std::io::Result<Developing> {
+    Job::spawn("develop", shared.waker(), move |_, _| {
+        let light = shot.light.as_deref().ok_or(Cancelled)?;
+        Ok(shown::picture(light, reference.as_deref().map(|r| &r.pixels[..]), &present, tone))
+    })
+}
+
+/// Quality against its cost, on its way.
+pub type Trading = Job<Result<(), CheckError>>;
+
+/// Columns and rows of the picture whose rays are traced for it, at most: many structures wait for their turn.
+const TRADED: u32 = 240;
+
+/// Starts measuring variants on the rays of a view; each is sent as soon as it is through, and the renderer is kept from
+/// running meanwhile.
+pub fn tradeoffs(
+    shared: &Shared,
+    variants: Vec<Variant>,
+    view: render::Job,
+    [width, height]: [u32; 2],
+    (through, pause): (Sender<TradeoffRow>, render::progressive::Pause),
+) -> std::io::Result<Trading> {
+    let Shared { pool, budget, wake, .. } = shared.clone();
+    Job::spawn("tradeoffs", shared.waker(), move |cancel, progress| {
+        pause.wait();
+        // Builds and measurements have phases of their own, which are not told.
+        let cx = BuildCx::new(cancel.clone(), Progress::new(), pool, budget);
+        let shrink = width.max(height).div_ceil(TRADED).max(1);
+        progress.start("exact answers", 1);
+        let tradeoffs = Tradeoffs::new(&view, [width.div_ceil(shrink), height.div_ceil(shrink)], &cx)?;
+        progress.start("structures", variants.len() as u64);
+        for variant in variants {
+            let row = tradeoffs.measure(&variant, view.accel.geometry(), &cx)?;
+            // Nobody listens once the window is closed, and then this is cancelled as well.
+            let _ = through.send(row);
+            progress.advance(1);
+            wake();
+        }
+        Ok(())
     })
 }
 

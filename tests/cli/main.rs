@@ -2,6 +2,7 @@
 
 mod failures;
 mod files;
+mod light;
 mod quality;
 mod reports;
 mod support;

@@ -9,6 +9,7 @@ mod window;
 
 mod accessibility;
 mod checking;
+mod comparing;
 mod errors;
 mod hands;
 mod layout;

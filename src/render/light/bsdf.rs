@@ -36,12 +36,19 @@ pub struct Drawn {
     pub density: f32,
 }
 
-/// What depends on the direction that light goes to alone.
+/// The material seen from one direction: what depends on that alone is worked out once.
 #[derive(Clone, Copy, Debug)]
-struct Shares {
+pub struct Seen {
+    of: Bsdf,
+    to: Vec3,
     facets: Roughness,
     albedo: Albedo,
-    coat: f32,
+    /// How many times what metal and coat mirror once they mirror altogether.
+    gains: [f32; 4],
+    /// What of the body is seen through the coat.
+    body: f32,
+    /// What the coat leaves of light from everywhere, times pi.
+    out: f32,
     /// How likely coat and metal, matt body and clear body are drawn.
     chances: [f32; 3],
 }
@@ -52,69 +59,77 @@ fn fresnel(f0: f32, cosine: f32) -> f32 {
 }
 
 impl Bsdf {
-    fn shares(&self, to: Vec3) -> Shares {
-        let albedo = Albedo::of(to.z, self.roughness);
-        let coat = if self.f0 > 0.0 { albedo.share(self.f0) } else { 0.0 };
-        let metal = self.base.to_array().map(|f0| albedo.share(f0));
-        let body = (1.0 - self.metallic) * (1.0 - coat) * self.base.max_element();
-        let mirror = (1.0 - self.metallic) * coat + self.metallic * metal.into_iter().fold(0.0, f32::max);
-        let all = [mirror, body * (1.0 - self.transmission), body * self.transmission];
-        let sum = all.iter().sum::<f32>();
-        let chances = if sum > 0.0 { all.map(|x| x / sum) } else { [0.0; 3] };
-        Shares { facets: Roughness::new(self.roughness), albedo, coat, chances }
-    }
-
-    /// The response to light that comes from one direction and goes to another, times the cosine of the first; and how
-    /// densely [`Self::draw`] draws it.
-    pub fn evaluate(&self, to: Vec3, from: Vec3) -> (Vec3, f32) {
-        if to.z <= 0.0 { (Vec3::ZERO, 0.0) } else { self.respond(to, from, &self.shares(to)) }
-    }
-
-    fn respond(&self, to: Vec3, from: Vec3, shares: &Shares) -> (Vec3, f32) {
-        let [mirror, matt, clear] = shares.chances;
-        let body = (1.0 - self.metallic) * (1.0 - shares.coat);
-        if from.z < 0.0 {
-            // Straight through, as rough as the coat: its mirror image on the other side.
-            let image = Vec3::new(from.x, from.y, -from.z);
-            let lobe = shares.facets.reflected(to, image) / shares.albedo.once().max(1e-4) * image.z;
-            return (self.base * (body * self.transmission * lobe), clear * shares.facets.density(to, image));
-        }
-        if from.z == 0.0 {
-            return (Vec3::ZERO, 0.0);
-        }
-        let half = (to + from).normalize_or_zero();
-        let (lobe, cosine) = (shares.facets.reflected(to, from), to.dot(half));
-        let reflected = |f0: f32| if f0 > 0.0 { fresnel(f0, cosine) * shares.albedo.gain(f0) * lobe } else { 0.0 };
-        let metal = Vec3::from_array(self.base.to_array().map(reflected));
-        let mirrored = metal * self.metallic + Vec3::splat((1.0 - self.metallic) * reflected(self.f0));
-        // What the coat leaves to the body from here, and lets out there, over the mean: one direction for the other.
-        let into = 1.0 - if self.f0 > 0.0 { Albedo::of(from.z, self.roughness).share(self.f0) } else { 0.0 };
-        let out = 1.0 - if self.f0 > 0.0 { Albedo::mean(self.roughness).share(self.f0) } else { 0.0 };
-        let matt_body = self.base * (body * (1.0 - self.transmission) * into / (out.max(1e-4) * PI));
-        let density = mirror * shares.facets.density(to, from) + matt * from.z / PI;
-        ((mirrored + matt_body) * from.z, density)
-    }
-
-    /// Draws a direction that light may come from; `None` where none does.
-    pub fn draw(&self, to: Vec3, which: f32, u: Vec2) -> Option<Drawn> {
+    /// As it is seen from a direction; nothing is seen from behind.
+    pub fn seen(&self, to: Vec3) -> Option<Seen> {
         if to.z <= 0.0 {
             return None;
         }
-        let shares = self.shares(to);
-        let [mirror, matt, _] = shares.chances;
+        let Self { base, metallic, roughness, transmission, f0 } = *self;
+        let albedo = Albedo::of(to.z, roughness);
+        let coat = if f0 > 0.0 { albedo.share(f0) } else { 0.0 };
+        let metal = if metallic > 0.0 { base.to_array().map(|f0| albedo.share(f0)) } else { [0.0; 3] };
+        let body = (1.0 - metallic) * (1.0 - coat);
+        let seen = body * base.max_element();
+        let mirror = (1.0 - metallic) * coat + metallic * metal.into_iter().fold(0.0, f32::max);
+        let all = [mirror, seen * (1.0 - transmission), seen * transmission];
+        let sum = all.iter().sum::<f32>();
+        let chances = if sum > 0.0 { all.map(|x| x / sum) } else { [0.0; 3] };
+        let out = 1.0 - if f0 > 0.0 { Albedo::mean(roughness).share(f0) } else { 0.0 };
+        let gains = [base.x, base.y, base.z, f0].map(|f0| albedo.gain(f0));
+        let facets = Roughness::new(roughness);
+        Some(Seen { of: *self, to, facets, albedo, gains, body, out: out.max(1e-4) * PI, chances })
+    }
+}
+
+impl Seen {
+    /// The response to light that comes from a direction, times its cosine; and how densely [`Self::draw`] draws it.
+    pub fn evaluate(&self, from: Vec3) -> (Vec3, f32) {
+        let Bsdf { base, metallic, roughness, transmission, f0 } = self.of;
+        let [mirror, matt, clear] = self.chances;
+        if from.z == 0.0 {
+            return (Vec3::ZERO, 0.0);
+        }
+        if from.z < 0.0 {
+            if clear <= 0.0 {
+                return (Vec3::ZERO, 0.0);
+            }
+            // Straight through, as rough as the coat: its mirror image on the other side.
+            let image = Vec3::new(from.x, from.y, -from.z);
+            let facets = self.facets.between(self.to, image);
+            let lobe = facets.reflected / self.albedo.once().max(1e-4) * image.z;
+            return (base * (self.body * transmission * lobe), clear * facets.density);
+        }
+        let facets = self.facets.between(self.to, from);
+        let reflected = |f0: f32, gain: f32| if f0 > 0.0 { fresnel(f0, facets.cosine) * gain * facets.reflected } else { 0.0 };
+        let mut response = Vec3::splat((1.0 - metallic) * reflected(f0, self.gains[3]));
+        if metallic > 0.0 {
+            let metal = Vec3::from_array([0, 1, 2].map(|k| reflected(base[k], self.gains[k])));
+            response += metal * metallic;
+        }
+        if matt > 0.0 {
+            // What the coat leaves to the body from here, and lets out there, over the mean: one direction for the other.
+            let into = 1.0 - if f0 > 0.0 { Albedo::of(from.z, roughness).share(f0) } else { 0.0 };
+            response += base * (self.body * (1.0 - transmission) * into / self.out);
+        }
+        (response * from.z, mirror * facets.density + matt * from.z / PI)
+    }
+
+    /// Draws a direction that light may come from; `None` where none does.
+    pub fn draw(&self, which: f32, u: Vec2) -> Option<Drawn> {
+        let [mirror, matt, _] = self.chances;
         let from = if which < mirror {
-            mirrored(to, shares.facets.sample(to, u))
+            mirrored(self.to, self.facets.sample(self.to, u))
         } else if which < mirror + matt {
             cosine_direction(Vec3::Z, u)
         } else {
-            let image = mirrored(to, shares.facets.sample(to, u));
+            let image = mirrored(self.to, self.facets.sample(self.to, u));
             Vec3::new(image.x, image.y, -image.z)
         };
         // A facet may mirror light into the surface, or a clear body back out of it: that is lost.
         if (which < mirror + matt) != (from.z > 0.0) {
             return None;
         }
-        let (response, density) = self.respond(to, from, &shares);
+        let (response, density) = self.evaluate(from);
         (density > 0.0).then(|| Drawn { from, weight: response / density, density })
     }
 }
@@ -125,9 +140,9 @@ mod tests {
 
     /// Numbers from 0 to below 1, the same everywhere.
     fn random(n: u32) -> impl Iterator<Item = [f32; 3]> {
-        use crate::render::sampler::Sampler;
+        use crate::render::sampler::Random;
         (0..n).map(|i| {
-            let (a, b) = (Sampler::new(i, 0, 0).pair(0), Sampler::new(i, 0, 0).pair(1));
+            let (a, b) = (Random::new(i, 0, 0).pair(0), Random::new(i, 0, 0).pair(1));
             [a.x, a.y, b.x]
         })
     }
@@ -141,7 +156,10 @@ mod tests {
         const N: u32 = 1 << 14;
         let (mut sum, mut squares) = (0.0f64, 0.0f64);
         for [a, b, c] in random(N) {
-            let share = bsdf.draw(to, c, Vec2::new(a, b)).map_or(0.0, |drawn| f64::from(drawn.weight.max_element()));
+            let share = bsdf
+                .seen(to)
+                .and_then(|seen| seen.draw(c, Vec2::new(a, b)))
+                .map_or(0.0, |drawn| f64::from(drawn.weight.max_element()));
             (sum, squares) = (sum + share, squares + share * share);
         }
         let (n, mean) = (f64::from(N), sum / f64::from(N));
@@ -180,14 +198,14 @@ mod tests {
         // Over all directions it sums to the share of draws that come to something.
         for (metallic, roughness, transmission) in [(0.0, 0.5, 0.0), (1.0, 0.4, 0.0), (0.0, 0.8, 0.7), (0.3, 1.0, 0.2)] {
             let bsdf = Bsdf { base: Vec3::new(0.9, 0.5, 0.2), metallic, roughness, transmission, f0: 0.04 };
-            let to = to(0.6);
+            let seen = bsdf.seen(to(0.6)).expect("from the front");
             const N: u32 = 1 << 15;
-            let drawn = random(N).filter(|[a, b, c]| bsdf.draw(to, *c, Vec2::new(*a, *b)).is_some()).count();
+            let drawn = random(N).filter(|[a, b, c]| seen.draw(*c, Vec2::new(*a, *b)).is_some()).count();
             let sum: f64 = random(N)
                 .map(|[a, b, _]| {
                     let (z, angle) = (2.0 * a - 1.0, std::f32::consts::TAU * b);
                     let sine = (1.0 - z * z).max(0.0).sqrt();
-                    f64::from(bsdf.evaluate(to, Vec3::new(sine * angle.cos(), sine * angle.sin(), z)).1)
+                    f64::from(seen.evaluate(Vec3::new(sine * angle.cos(), sine * angle.sin(), z)).1)
                 })
                 .sum();
             let (share, sum) = (drawn as f64 / f64::from(N), sum / f64::from(N) * 4.0 * std::f64::consts::PI);
@@ -199,7 +217,8 @@ mod tests {
     fn a_matt_body_answers_alike_both_ways() {
         let bsdf = Bsdf { base: Vec3::splat(0.5), metallic: 0.0, roughness: 1.0, transmission: 0.0, f0: 0.0 };
         let (a, b) = (to(0.3), Vec3::new(-0.6, 0.0, 0.8));
-        let (there, back) = (bsdf.evaluate(a, b).0 / b.z, bsdf.evaluate(b, a).0 / a.z);
+        let response = |to: Vec3, from: Vec3| bsdf.seen(to).expect("from the front").evaluate(from).0 / from.z;
+        let (there, back) = (response(a, b), response(b, a));
         assert!((there - back).abs().max_element() < 1e-6 && (there.x - 0.5 / PI).abs() < 1e-6);
     }
 }

@@ -41,10 +41,16 @@ impl Roughness {
         1.0 / (1.0 + self.hidden(to) + self.hidden(from))
     }
 
-    /// What a mirror reflects from one direction to another, without Fresnel's share.
-    pub fn reflected(self, to: Vec3, from: Vec3) -> f32 {
+    /// What facets do between two directions.
+    pub fn between(self, to: Vec3, from: Vec3) -> Between {
         let half = (to + from).normalize_or_zero();
-        self.facets(half) * self.masking_of_both(to, from) / (4.0 * to.z * from.z).max(1e-12)
+        let (facets, hidden) = (self.facets(half), self.hidden(to));
+        let masking_of_both = 1.0 / (1.0 + hidden + self.hidden(from));
+        Between {
+            reflected: facets * masking_of_both / (4.0 * to.z * from.z).max(1e-12),
+            density: facets / ((1.0 + hidden) * (4.0 * to.z).max(1e-12)),
+            cosine: to.dot(half),
+        }
     }
 
     /// The normal of a facet, drawn from those that are seen from `to` (Dupuy and Benyoub 2023).
@@ -55,12 +61,17 @@ impl Roughness {
         let facet = Vec3::new(sine * angle.cos(), sine * angle.sin(), z) + stretched;
         Vec3::new(self.0 * facet.x, self.0 * facet.y, facet.z.max(0.0)).normalize_or(Vec3::Z)
     }
+}
 
-    /// How densely [`mirrored`] directions of such facets are drawn, over solid angle.
-    pub fn density(self, to: Vec3, from: Vec3) -> f32 {
-        let half = (to + from).normalize_or_zero();
-        self.facets(half) * self.masking(to) / (4.0 * to.z).max(1e-12)
-    }
+/// What the facets of a mirror do with light that comes from one direction and goes to another.
+#[derive(Clone, Copy, Debug)]
+pub struct Between {
+    /// What they reflect, without Fresnel's share.
+    pub reflected: f32,
+    /// How densely [`mirrored`] directions of facets that are drawn are, over solid angle.
+    pub density: f32,
+    /// The cosine between either direction and the facets that mirror one to the other.
+    pub cosine: f32,
 }
 
 /// The direction that a facet mirrors another to.

@@ -1,49 +1,79 @@
-//! Where light comes from: triangles that shine, and a sky around everything.
+//! Where light comes from: triangles that shine, lights without extent, and what is around the scene.
+
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 
-use crate::scene::{Geometry, Scene};
+use super::beams::Beams;
+use super::environment::Dome;
+use super::shining::Shining;
+use super::sky::{Sky, Sun};
+use crate::geometry::num::narrow;
+use crate::scene::texture::Textures;
+use crate::scene::{Environment, Finish, Geometry, Scene};
 use crate::task::{Cancel, Cancelled};
 
-/// The lights of a scene. Lengths and areas are those of the scaled space.
+/// What is around a scene.
+#[derive(Clone, Debug, Default)]
+pub enum Surroundings {
+    /// A clear day where the scene has no lights of its own, and else nothing.
+    #[default]
+    Usual,
+    /// A clear day whatever the scene has, with the sun so high over the horizon and so far round, in radians.
+    Day {
+        /// Over the horizon; below it there is no sun.
+        elevation: f32,
+        /// Round the axis that is up.
+        azimuth: f32,
+    },
+    /// An image, turned by so many radians about the axis that is up, and so many times as bright.
+    Image {
+        /// What is seen all around.
+        image: Arc<Environment>,
+        /// In radians.
+        turn: f32,
+        /// 1 for as it is.
+        strength: f32,
+    },
+}
+
+impl Surroundings {
+    /// The sun of a usual day: half way up, over the shoulder of who looks along the first axis.
+    const SUN: [f32; 2] = [0.9, 0.6];
+
+    /// What tells one from another, for a person and for a hash.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Usual => "usual".to_owned(),
+            Self::Day { elevation, azimuth } => format!("day, sun {elevation} up, {azimuth} round"),
+            Self::Image { image, turn, strength } => format!("{}, turned {turn}, times {strength}", image.name()),
+        }
+    }
+}
+
+/// The lights of a scene.
 #[derive(Debug, Default)]
 pub struct Sources {
-    shining: Vec<Shining>,
-    /// The power of all up to each, itself included.
-    powers: Vec<f64>,
+    shining: Shining,
+    beams: Beams,
+    sun: Option<Sun>,
     sky: Option<Sky>,
+    dome: Option<Dome>,
+    /// How likely triangles, beams, the sun and the dome are asked. The sky is not: it is found by chance well enough.
+    chances: [f32; 4],
+    up: Vec3,
 }
 
-/// A triangle that shines.
+/// Light that may come to a point.
 #[derive(Clone, Copy, Debug)]
-struct Shining {
-    instance: u32,
-    primitive: u32,
-    radiance: Vec3,
-}
-
-/// Radiance from far away, linear, by how far up it comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sky {
-    /// Straight from above.
-    pub zenith: Vec3,
-    /// From the horizon.
-    pub horizon: Vec3,
-    /// From below.
-    pub ground: Vec3,
-}
-
-/// A point that light comes from.
-#[derive(Clone, Copy, Debug)]
-pub struct Chosen {
-    /// In the scaled space.
-    pub at: Vec3,
-    /// Of the triangle, of unit length.
-    pub normal: Vec3,
-    /// What it sends out.
-    pub radiance: Vec3,
-    /// How densely such points are chosen, over area.
+pub struct Incoming {
+    /// To where it comes from, of unit length.
+    pub dir: Vec3,
+    /// Where that is, in the world; `None` if infinitely far away.
+    pub from: Option<Vec3>,
+    /// Radiance over [`Self::density`]; of a beam, irradiance over how likely it was chosen.
+    pub light: Vec3,
+    /// How densely such directions are chosen, over solid angle; infinite for a beam, which nothing else finds.
     pub density: f32,
 }
 
@@ -52,29 +82,19 @@ pub fn brightness(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-impl Sky {
-    /// A clear day without its sun.
-    pub const DAY: Self =
-        Self { zenith: Vec3::new(0.55, 0.75, 1.1), horizon: Vec3::new(1.0, 1.0, 1.0), ground: Vec3::new(0.28, 0.26, 0.24) };
+/// No light is asked less often than that many times of all it could be: what is dim altogether may be bright somewhere.
+const LEAST: f64 = 0.1;
 
-    /// The same from everywhere.
-    pub const fn even(radiance: Vec3) -> Self {
-        Self { zenith: radiance, horizon: radiance, ground: radiance }
+/// Four chances by power; none where there is none.
+fn chances(powers: [f64; 4]) -> [f32; 4] {
+    let total: f64 = powers.iter().sum();
+    if total.is_nan() || total <= 0.0 {
+        return [0.0; 4];
     }
-
-    /// What comes from a direction of unit length.
-    pub fn radiance(&self, dir: Vec3, up: Vec3) -> Vec3 {
-        let height = dir.dot(up);
-        if height >= 0.0 {
-            self.horizon.lerp(self.zenith, height.min(1.0))
-        } else {
-            self.horizon.lerp(self.ground, (-height * 8.0).min(1.0))
-        }
-    }
+    let shares = powers.map(|power| if power > 0.0 { (power / total).max(LEAST) } else { 0.0 });
+    let all: f64 = shares.iter().sum();
+    shares.map(|share| narrow(share / all))
 }
-
-/// Triangles between two looks at the cancel flag.
-const CHUNK: usize = 1 << 14;
 
 impl Sources {
     /// A sky and nothing else.
@@ -82,67 +102,125 @@ impl Sources {
         Self { sky: Some(sky), ..Self::default() }
     }
 
-    /// The triangles of a scene that shine; where there are none, a sky. Runs on the threads of the pool that it is called in.
+    /// All lights of a scene. Runs on the threads of the pool that it is called in.
     ///
     /// # Errors
     /// [`Cancelled`] if asked to stop.
-    pub fn of(scene: &Scene, geometry: &Geometry, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let mut sources = Self::default();
-        for (number, instance) in (0u32..).zip(&scene.instances) {
-            let mesh = &scene.meshes[instance.mesh];
-            let radiance = mesh.material.and_then(|m| scene.materials.get(m)).map_or(Vec3::ZERO, |m| m.emission.into());
-            if radiance.max_element() <= 0.0 {
-                continue;
-            }
-            let count = geometry.count_of(number);
-            let area = |primitive: u32| {
-                let [a, b, c] = geometry.corners_of(number, primitive);
-                let area = 0.5 * (b - a).as_dvec3().cross((c - a).as_dvec3()).length();
-                if area.is_finite() { area } else { 0.0 }
-            };
-            let chunk = |from: usize| {
-                cancel.check()?;
-                Ok((from..count.min(from + CHUNK)).map(|i| area(crate::geometry::num::index(i))).collect())
-            };
-            let starts: Vec<usize> = (0..count).step_by(CHUNK).collect();
-            let areas: Result<Vec<Vec<f64>>, Cancelled> = starts.into_par_iter().map(chunk).collect();
-            for (primitive, area) in (0u32..).zip(areas?.concat()).filter(|(_, area)| *area > 0.0) {
-                let power = sources.total() + area * f64::from(brightness(radiance));
-                sources.powers.push(power);
-                sources.shining.push(Shining { instance: number, primitive, radiance });
+    pub fn of(
+        scene: &Scene,
+        geometry: &Geometry,
+        (textures, surroundings): (&Textures, &Surroundings),
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        let up = scene.up.normalize_or(Vec3::Y);
+        let bounds = geometry.world_bounds();
+        let radius = 0.5 * f64::from(bounds.size().length());
+        let disc = std::f64::consts::PI * radius * radius;
+        let shining = Shining::of(scene, geometry, textures, cancel)?;
+        let beams = Beams::of(&scene.lights, disc);
+        let mut sources = Self { shining, beams, up, ..Self::default() };
+        let has_lights = sources.shining.total() > 0.0 || sources.beams.total() > 0.0;
+        let day =
+            |[elevation, azimuth]: [f32; 2]| (Some(Sky::DAY), (elevation > 0.0).then(|| Sun::by_day(elevation, azimuth, up)));
+        match surroundings {
+            Surroundings::Usual if has_lights => {}
+            Surroundings::Usual => (sources.sky, sources.sun) = day(Surroundings::SUN),
+            Surroundings::Day { elevation, azimuth } => (sources.sky, sources.sun) = day([*elevation, *azimuth]),
+            Surroundings::Image { image, turn, strength } => {
+                sources.dome = Some(Dome::new(Arc::clone(image), *turn, *strength, cancel)?);
             }
         }
-        if sources.shining.is_empty() {
-            sources.sky = Some(Sky::DAY);
-        }
+        let area = geometry.space().scale().powi(2);
+        let of_triangles = 2.0 * std::f64::consts::PI * area * sources.shining.total();
+        let of_sun = sources.sun.map_or(0.0, |sun| f64::from(brightness(sun.irradiance())) * disc);
+        let of_dome = sources.dome.as_ref().map_or(0.0, |dome| dome.power_per_area() * disc);
+        sources.chances = chances([of_triangles, sources.beams.total(), of_sun, of_dome]);
         Ok(sources)
     }
 
-    fn total(&self) -> f64 {
-        self.powers.last().copied().unwrap_or(0.0)
+    /// Light that may come to a point of the scaled space from a source that `which` chooses.
+    pub fn choose(
+        &self,
+        (scene, geometry, textures): (&Scene, &Geometry, &Textures),
+        point: Vec3,
+        which: f32,
+        u: Vec2,
+    ) -> Option<Incoming> {
+        let [triangles, beams, sun, dome] = self.chances;
+        let (mut from, mut which) = (0.0, which);
+        // The number is used again within what it has chosen.
+        let mut falls_to = |chance: f32| {
+            let within = (which - from) / chance;
+            let is_it = chance > 0.0 && which < from + chance;
+            from += chance;
+            if is_it {
+                which = within.clamp(0.0, 1.0f32.next_down());
+            }
+            is_it
+        };
+        if falls_to(triangles) {
+            self.of_triangle((scene, geometry, textures), point, which, u)
+        } else if falls_to(beams) {
+            let beam = self.beams.choose(which, geometry.space().world_point(point))?;
+            let light = beam.irradiance / (beam.chance * beams);
+            Some(Incoming { dir: beam.dir, from: beam.at, light, density: f32::INFINITY })
+        } else if falls_to(sun) {
+            let dir = self.sun?.choose(u);
+            self.of_far(dir, Some(self.sun?.irradiance()))
+        } else if dome > 0.0 {
+            let (dir, ..) = self.dome.as_ref()?.choose(u, self.up)?;
+            self.of_far(dir, None)
+        } else {
+            None
+        }
     }
 
-    /// The sky, if there is one.
-    pub const fn above(&self) -> Option<&Sky> {
-        self.sky.as_ref()
+    fn of_triangle(
+        &self,
+        (scene, geometry, textures): (&Scene, &Geometry, &Textures),
+        point: Vec3,
+        which: f32,
+        u: Vec2,
+    ) -> Option<Incoming> {
+        let chosen = self.shining.choose(scene, geometry, which, u)?;
+        let away = chosen.at - point;
+        let distance = away.length();
+        let dir = away.try_normalize()?;
+        let cosine = chosen.normal.dot(dir).abs();
+        let density = self.chances[0] * chosen.density * distance * distance / cosine;
+        let mesh = scene.instances[chosen.instance as usize].mesh;
+        let radiance = Finish::new(scene, mesh, textures).emission(chosen.primitive, chosen.uv.x, chosen.uv.y);
+        let (from, light) = (Some(geometry.space().world_point(chosen.at)), Vec3::from(radiance) / density);
+        (density > 0.0 && density.is_finite()).then_some(Incoming { dir, from, light, density })
     }
 
-    /// A point of a triangle that shines, by power; `None` if none does.
-    pub fn choose(&self, geometry: &Geometry, which: f32, u: Vec2) -> Option<Chosen> {
-        let at = self.powers.partition_point(|power| *power <= f64::from(which) * self.total());
-        let Shining { instance, primitive, radiance } = *self.shining.get(at.min(self.shining.len().checked_sub(1)?))?;
-        let [a, b, c] = geometry.corners_of(instance, primitive);
-        // Evenly over a triangle (Shirley and Chiu 1997; Osada et al. 2002).
-        let root = u.x.sqrt();
-        let at = a + (b - a) * (root * (1.0 - u.y)) + (c - a) * (root * u.y);
-        let normal = (b - a).as_dvec3().cross((c - a).as_dvec3()).try_normalize()?.as_vec3();
-        Some(Chosen { at, normal, radiance, density: self.density(radiance) })
+    /// What comes from far away, from a direction that was chosen; at the sun's edge rounding would lose it.
+    fn of_far(&self, dir: Vec3, irradiance: Option<Vec3>) -> Option<Incoming> {
+        let (mut radiance, mut density) = self.far(dir);
+        if let (Some(irradiance), Some(sun)) = (irradiance, self.sun.filter(|sun| sun.density(dir) <= 0.0)) {
+            let of_sun = sun.density(sun.choose(Vec2::ZERO));
+            (radiance, density) = (radiance + irradiance * of_sun, density + self.chances[2] * of_sun);
+        }
+        (density > 0.0).then(|| Incoming { dir, from: None, light: radiance / density, density })
     }
 
-    /// How densely [`Self::choose`] chooses points of triangles with this radiance, over area: brighter ones as much more
-    /// as they are brighter, whatever their size.
-    pub fn density(&self, radiance: Vec3) -> f32 {
-        let total = self.total();
-        if total > 0.0 { crate::geometry::num::narrow(f64::from(brightness(radiance)) / total) } else { 0.0 }
+    /// Radiance from far away, from a direction of unit length, and how densely [`Self::choose`] chooses that over solid angle.
+    pub fn far(&self, dir: Vec3) -> (Vec3, f32) {
+        let mut far = (Vec3::ZERO, 0.0);
+        if let Some(sky) = &self.sky {
+            far.0 += sky.radiance(dir, self.up);
+        }
+        if let Some(sun) = &self.sun {
+            far = (far.0 + sun.radiance(dir), far.1 + self.chances[2] * sun.density(dir));
+        }
+        if let Some(dome) = &self.dome {
+            far = (far.0 + dome.radiance(dir, self.up), far.1 + self.chances[3] * dome.density(dir, self.up));
+        }
+        far
+    }
+
+    /// How densely [`Self::choose`] chooses points of triangles of a material, over area of the scaled space.
+    pub fn density(&self, material: Option<usize>) -> f32 {
+        self.chances[0] * self.shining.density(material)
     }
 }

@@ -2,7 +2,7 @@
 //! the samples of a picture lie there.
 
 use crate::geometry::Aabb;
-use crate::render::sampler::{in_pixel, on_screen};
+use crate::render::sampler::on_screen;
 use crate::scene::{Camera, Geometry, Projection};
 use glam::{DMat3, DVec3, Vec2, Vec3};
 
@@ -41,7 +41,7 @@ impl View {
         let sized = width > 0 && height > 0 && half.is_finite() && half.x != 0.0 && half.y != 0.0;
         let seen = sized && eye.is_finite() && into.is_finite();
         // The samples are those of the first pass of a picture, to the bit.
-        let at = |x: u32, y: u32| on_screen(Vec2::new(x as f32, y as f32) + in_pixel(x, y, 0), size);
+        let at = |x: u32, y: u32| on_screen(Vec2::new(x as f32, y as f32) + 0.5, size);
         let columns = (0..width).map(|x| f64::from(at(x, 0).x)).collect();
         let rows = (0..height).map(|y| f64::from(at(0, y).y)).collect();
         let view = Self { eye, into, parallel, near: 0.0, columns, rows };

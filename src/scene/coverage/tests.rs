@@ -1,13 +1,13 @@
 use super::*;
 use crate::scene::LoadCx;
-use crate::scene::texture::Channel;
 use crate::scene::texture::tests::{material, png, scene};
+use crate::scene::texture::{Channel, Detail};
 
 /// Left half solid, right half not there.
 const HALVES: [[u8; 4]; 2] = [[255, 255, 255, 255], [255, 0, 0, 0]];
 
 fn decoded(scene: &Scene) -> Textures {
-    Textures::decode(scene, &LoadCx::unattended()).expect("not cancelled")
+    Textures::decode(scene, Detail::Colors, &LoadCx::unattended()).expect("not cancelled")
 }
 
 fn with(alpha: Alpha, texels: &[[u8; 4]]) -> Scene {

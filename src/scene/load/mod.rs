@@ -100,7 +100,7 @@ pub(super) fn linear_from_srgb(rgb: [f32; 3]) -> [f32; 3] {
 }
 
 /// Clamped to 0 to 1; NaN is 0.
-fn unit(x: f32) -> f32 {
+pub(super) fn unit(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 

@@ -23,6 +23,8 @@ pub(super) enum Refusal {
     Unread(#[from] Reason),
     #[error("it has {0} by {1} texels, and no side may have more than {MAX_SIDE}")]
     TooLarge(u32, u32),
+    #[error("light of more than 8 bits is for surroundings, not for surfaces. Store it as PNG")]
+    Light,
     #[error("it has no texels")]
     Empty,
     #[error(transparent)]
@@ -51,7 +53,11 @@ fn texture(bytes: &[u8], name: &Path, wanted: &Wanted, cx: &LoadCx) -> Result<(T
     if let Ok(by_name) = ImageFormat::from_path(name) {
         reader.set_format(by_name);
     }
-    let decoder = reader.with_guessed_format().map_err(ImageError::IoError)?.into_decoder()?;
+    let reader = reader.with_guessed_format().map_err(ImageError::IoError)?;
+    if matches!(reader.format(), Some(ImageFormat::Hdr | ImageFormat::OpenExr)) {
+        return Err(Refusal::Light);
+    }
+    let decoder = reader.into_decoder()?;
     let (width, height) = decoder.dimensions();
     if width.max(height) > MAX_SIDE {
         return Err(Refusal::TooLarge(width, height));

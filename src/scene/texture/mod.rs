@@ -2,7 +2,8 @@
 //!
 //! Loading a model notes where its images are ([`Image`]) and how materials use them
 //! ([`TextureUse`]), and decodes none of them: the first picture does not wait for that.
-//! [`Textures::decode`] does it afterwards, for the images that are seen.
+//! [`Textures::decode`] does it afterwards, for the images that are seen, and as much of them as the kind of picture needs
+//! ([`Detail`]).
 
 mod decode;
 mod pack;
@@ -17,7 +18,8 @@ pub use sampler::{Filter, Sampler, Wrap};
 pub use source::{Image, ImageSource};
 pub use texels::{Channel, Texture};
 pub use textures::Textures;
-pub(super) use uses::shown_materials;
+pub use uses::Detail;
+pub(super) use uses::{color_images, shown_materials};
 pub use uv_transform::UvTransform;
 
 /// How a material uses an image. Which of a file's sets of texture coordinates it refers to is no

@@ -39,9 +39,9 @@ pub(super) fn pack((width, height): (usize, usize), mut layout: Layout, mut texe
             let (sum, of) = layout.weighed(texel, *channel);
             rounded(sum, of)
         });
-        layout = Layout::Value;
+        layout = Layout::Value(*channel);
     }
-    let full = layout == Layout::Value && texels.iter().all(|value| *value == 255);
+    let full = matches!(layout, Layout::Value(_)) && texels.iter().all(|value| *value == 255);
     Texture { width, height, layout, texels, full }
 }
 

@@ -5,7 +5,7 @@ use glam::Vec2;
 use image::{DynamicImage, GrayImage, ImageFormat, RgbImage, RgbaImage};
 
 use super::*;
-use crate::scene::{Alpha, AlphaTexture, Instance, LoadCx, Material, Mesh, Scene};
+use crate::scene::{Alpha, Instance, Keep, LoadCx, Material, Mesh, NormalTexture, Scene, ValueTexture};
 use crate::task::{Budget, Cancel};
 
 /// An image in the PNG format, of rows of `width` texels.
@@ -46,7 +46,7 @@ pub(in crate::scene) fn material(color: Option<usize>, alpha: Option<(usize, Cha
     Material {
         base_color: [1.0; 4],
         base_color_texture: color.map(use_of),
-        alpha_texture: alpha.map(|(image, channel)| AlphaTexture { texture: use_of(image), channel }),
+        alpha_texture: alpha.map(|(image, channel)| ValueTexture { texture: use_of(image), channel }),
         alpha: if alpha.is_some() { Alpha::Blend } else { Alpha::Opaque },
         ..Material::PLAIN
     }
@@ -59,7 +59,7 @@ fn sampler(wrap: Wrap, filter: Filter) -> Sampler {
 }
 
 fn decoded(scene: &Scene) -> Textures {
-    Textures::decode(scene, &LoadCx::unattended()).expect("not cancelled")
+    Textures::decode(scene, Detail::Colors, &LoadCx::unattended()).expect("not cancelled")
 }
 
 /// A row of four greys, 0, 85, 170 and 255, whose red channel is read.
@@ -162,6 +162,68 @@ fn only_what_is_read_is_kept() {
     assert!(decoded(&unseen).get(0).is_none());
 }
 
+/// A material whose colour is image 0 and that reads its other maps from images 1 to 3.
+fn finished(emission: usize) -> Material {
+    let value = |image, channel| material(None, Some((image, channel))).alpha_texture;
+    let texture = material(Some(2), None).base_color_texture.expect("a texture");
+    Material {
+        metallic_texture: value(1, Channel::Blue),
+        roughness_texture: value(1, Channel::Green),
+        normal_texture: Some(NormalTexture { texture, scale: 1.0 }),
+        transmission_texture: value(3, Channel::Red),
+        emission_texture: material(Some(emission), None).base_color_texture,
+        ..material(Some(0), None)
+    }
+}
+
+#[test]
+fn only_paths_of_light_need_more_than_colours() {
+    let images = [(); 4].map(|()| png(2, &[[10, 20, 30, 255], [40, 50, 60, 70]]));
+    let scene_of = |emission| scene(&images, vec![finished(emission)]);
+    let bytes = |scene: &Scene, detail| {
+        let textures = Textures::decode(scene, detail, &LoadCx::unattended()).expect("not cancelled");
+        [0, 1, 2, 3].map(|image| textures.get(image).map_or(0, |texture| texture.bytes()))
+    };
+    assert_eq!(bytes(&scene_of(0), Detail::Colors), [6, 0, 0, 0]);
+    // Two channels of one image take all three; one alone takes itself.
+    assert_eq!(bytes(&scene_of(0), Detail::Light), [6, 6, 6, 2]);
+    assert_eq!(bytes(&scene_of(3), Detail::Light), [6, 6, 6, 6], "a colour and a value of one image");
+    let mut cutout = scene_of(0);
+    cutout.materials[0].alpha_texture = material(None, Some((3, Channel::Alpha))).alpha_texture;
+    assert_eq!(bytes(&cutout, Detail::Light), [6, 6, 6, 2], "an opaque surface has no opacity");
+    cutout.materials[0].alpha = Alpha::Blend;
+    assert_eq!(bytes(&cutout, Detail::Colors), [6, 0, 0, 2]);
+    assert_eq!(bytes(&cutout, Detail::Light), [6, 6, 6, 8]);
+    cutout.instances.clear();
+    assert_eq!(bytes(&cutout, Detail::Light), [0; 4]);
+    let all = LoadCx { keep: Keep::All, ..LoadCx::unattended() };
+    assert_eq!(Textures::decode(&scene_of(0), Detail::Colors, &all).expect("not cancelled").bytes(), 4 * 8);
+}
+
+#[test]
+fn values_are_as_stored_and_colours_are_light() {
+    let images = [(); 4].map(|()| png(1, &[[51, 102, 153, 255]]));
+    let textures = Textures::decode(&scene(&images, vec![finished(0)]), Detail::Light, &LoadCx::unattended()).expect("decoded");
+    let at = |image: usize| textures.get(image).expect("it is read");
+    let uv = Vec2::splat(0.5);
+    assert_eq!((at(1).value(uv, &NEAREST, Channel::Green), at(1).value(uv, &NEAREST, Channel::Blue)), (0.4, 0.6));
+    assert_eq!(at(2).stored(uv, &NEAREST), [0.2, 0.4, 0.6]);
+    assert_eq!(at(3).value(uv, &NEAREST, Channel::Red), 0.2);
+    let [red, ..] = at(0).color(uv, &NEAREST);
+    assert!((red - 0.0331).abs() < 1e-4, "{red}");
+    assert!(at(2).has_colors() && !at(3).has_colors() && at(3).has(Channel::Red) && !at(3).has(Channel::Green));
+}
+
+#[test]
+fn the_mean_is_of_light() {
+    let mean =
+        |texels: &[[u8; 4]]| decoded(&scene(&[png(2, texels)], vec![material(Some(0), None)])).get(0).unwrap().mean_color();
+    assert_eq!(mean(&[[0, 255, 7, 255], [255, 255, 7, 255]])[..2], [0.5, 1.0]);
+    let [r, g, b] = mean(&[[0, 188, 0, 255], [0, 188, 0, 255], [255, 0, 0, 255], [0, 0, 0, 255]]);
+    assert_eq!((r, b), (0.25, 0.0));
+    assert!((g - 0.25).abs() < 0.002, "188 is half the light of 255: {g}");
+}
+
 #[test]
 fn masks_are_alpha_or_brightness() {
     let value = |texels: &[[u8; 4]], channel| {
@@ -228,7 +290,7 @@ fn what_does_not_fit_the_budget_is_left_out() {
     let images = [png(100, &[[1; 4]; 10_000]), png(2, &[[255; 4]; 4])];
     let scene = scene(&images, vec![material(Some(0), None), material(Some(1), None)]);
     let cx = LoadCx { budget: Budget::new(20_000), ..LoadCx::unattended() };
-    let textures = Textures::decode(&scene, &cx).expect("not cancelled");
+    let textures = Textures::decode(&scene, Detail::Colors, &cx).expect("not cancelled");
     assert!(textures.get(0).is_none() && textures.get(1).is_some());
     assert!(textures.warnings()[0].contains("memory budget"), "{:?}", textures.warnings());
     assert_eq!(cx.budget.used(), textures.bytes());
@@ -241,7 +303,7 @@ fn it_stops_when_cancelled() {
     let scene = scene(&[png(1, &[[0; 4]])], vec![material(Some(0), None)]);
     let cx = LoadCx { cancel: Cancel::new(), ..LoadCx::unattended() };
     cx.cancel.cancel();
-    assert!(Textures::decode(&scene, &cx).is_err());
+    assert!(Textures::decode(&scene, Detail::Colors, &cx).is_err());
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 use glam::Vec2;
 
 use super::sampler::{Filter, Sampler};
+use crate::geometry::num;
 use crate::scene::load::linear_from_srgb;
 
 /// A decoded image. It holds only the channels that materials read.
@@ -19,7 +20,7 @@ pub struct Texture {
     pub(super) full: bool,
 }
 
-/// A channel of an image that a single value, opacity, is read from.
+/// A channel of an image that a single value is read from: opacity, say, or roughness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Channel {
     /// Red, as stored.
@@ -40,8 +41,8 @@ pub enum Channel {
 /// The channels of a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layout {
-    /// The one value that materials read, whichever channel it was.
-    Value,
+    /// The one value that materials read, of this channel.
+    Value(Channel),
     Grey,
     GreyAlpha,
     Rgb,
@@ -80,16 +81,50 @@ impl Texture {
         self.value(uv, sampler, Channel::Alpha)
     }
 
+    /// Red, green and blue at `uv`, 0 to 1 as stored: what is no colour has no curve. The same bits on every machine.
+    pub fn stored(&self, uv: Vec2, sampler: &Sampler) -> [f32; 3] {
+        self.filtered(uv, sampler, |texel| self.layout.rgb(texel).map(|stored| f32::from(stored) / 255.0))
+    }
+
+    /// The mean linear colour of all texels.
+    pub fn mean_color(&self) -> [f32; 3] {
+        // Counted first: the same few colours come again and again.
+        let mut counts = [[0u64; 256]; 3];
+        for texel in self.texels.chunks_exact(self.layout.channels()) {
+            for (counts, stored) in counts.iter_mut().zip(self.layout.rgb(texel)) {
+                counts[usize::from(stored)] += 1;
+            }
+        }
+        let mean = |counts: [u64; 256]| {
+            let sum: f64 = counts.iter().zip(&*LINEAR).map(|(n, linear)| *n as f64 * f64::from(*linear)).sum();
+            num::narrow(sum / counts.iter().sum::<u64>().max(1) as f64)
+        };
+        counts.map(mean)
+    }
+
     /// The value of one channel at `uv`, 0 to 1 as stored. The same bits on every machine.
     pub fn value(&self, uv: Vec2, sampler: &Sampler, channel: Channel) -> f32 {
         let [value] = self.filtered(uv, sampler, |texel| [self.layout.value(texel, channel)]);
         value
     }
 
+    /// Whether its colours are there, and not the values of one channel alone.
+    pub fn has_colors(&self) -> bool {
+        !matches!(self.layout, Layout::Value(_))
+    }
+
+    /// Whether values of a channel can be read, and it does not hold those of another alone.
+    pub fn has(&self, channel: Channel) -> bool {
+        match self.layout {
+            Layout::Value(only) => only == channel,
+            _ => true,
+        }
+    }
+
     /// Whether a channel is known to be 1 everywhere.
     pub fn is_one(&self, channel: Channel) -> bool {
         match self.layout {
-            Layout::Value => self.full,
+            Layout::Value(_) => self.full,
             // A channel of nothing but ones is not kept.
             Layout::Grey | Layout::Rgb => channel == Channel::Alpha,
             Layout::GreyAlpha | Layout::Rgba => false,
@@ -121,7 +156,7 @@ impl Layout {
     #[inline]
     pub fn channels(self) -> usize {
         match self {
-            Self::Value | Self::Grey => 1,
+            Self::Value(_) | Self::Grey => 1,
             Self::GreyAlpha => 2,
             Self::Rgb => 3,
             Self::Rgba => 4,
@@ -146,7 +181,7 @@ impl Layout {
         let [r, g, b] = self.rgb(texel).map(u16::from);
         let alpha = self.alpha(texel).map(u16::from);
         match channel {
-            _ if self == Self::Value => (r, 255),
+            _ if matches!(self, Self::Value(_)) => (r, 255),
             Channel::Red => (r, 255),
             Channel::Green => (g, 255),
             Channel::Blue => (b, 255),

@@ -10,7 +10,7 @@ use super::decode::{Refusal, decode};
 use super::pack::Wanted;
 use super::source::Image;
 use super::texels::Texture;
-use super::uses;
+use super::uses::{self, Detail};
 use crate::scene::{Keep, LoadCx, Scene};
 use crate::task::{Cancelled, Charge};
 
@@ -40,14 +40,14 @@ impl Textures {
         Self::default()
     }
 
-    /// Decodes the images that are seen (or all of them, see [`Keep`]), each once, on as many threads as the pool has. One that
-    /// cannot be read is a warning, and white.
+    /// Decodes the images that are seen (or all of them, see [`Keep`]) and needed for `detail`, each once, on as many threads
+    /// as the pool has. One that cannot be read is a warning, and white.
     ///
     /// # Errors
     /// [`Cancelled`], at once: images that are being decoded are left to end by themselves.
-    pub fn decode(scene: &Scene, cx: &LoadCx) -> Result<Self, Cancelled> {
+    pub fn decode(scene: &Scene, detail: Detail, cx: &LoadCx) -> Result<Self, Cancelled> {
         let wanted = match cx.keep {
-            Keep::Needed => uses::wanted(scene),
+            Keep::Needed => uses::wanted(scene, detail),
             Keep::All => vec![Some(Wanted { whole: true, ..Wanted::default() }); scene.images.len()],
         };
         let wanted = scene.images.iter().zip(wanted).enumerate();

@@ -1,7 +1,19 @@
 //! What of a scene's images is seen at all.
 
 use super::pack::Wanted;
-use crate::scene::{Alpha, Mesh, Scene};
+use super::texels::Channel;
+use crate::scene::{Alpha, Material, Mesh, Scene};
+
+/// How much of the looks of surfaces is read from images.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Detail {
+    /// Colour and opacity: enough for a picture shaded by the direction that surfaces face.
+    #[default]
+    Colors,
+    /// What paths of light need besides: where surfaces are metallic, rough or clear, which way they face, what they
+    /// send out.
+    Light,
+}
 
 /// For each material, whether its textures show: whether a mesh of it is placed and has texture
 /// coordinates.
@@ -16,22 +28,64 @@ pub(in crate::scene) fn shown_materials(scene: &Scene) -> Vec<bool> {
     shown
 }
 
+/// How many images are decoded for colour and opacity.
+pub(in crate::scene) fn color_images(scene: &Scene) -> usize {
+    wanted(scene, Detail::Colors).iter().flatten().count()
+}
+
 /// For each image, what is read of it; `None` if nothing is.
-pub(super) fn wanted(scene: &Scene) -> Vec<Option<Wanted>> {
-    let mut wanted: Vec<Option<Wanted>> = vec![None; scene.images.len()];
+pub(super) fn wanted(scene: &Scene, detail: Detail) -> Vec<Option<Wanted>> {
+    let mut reads = Reads(vec![None; scene.images.len()]);
     let shown = shown_materials(scene);
     for (material, _) in scene.materials.iter().zip(shown).filter(|(_, shown)| *shown) {
-        let of_color = material.base_color_texture.and_then(|texture| wanted.get_mut(texture.image));
-        if let Some(image) = of_color {
-            image.get_or_insert_default().color = true;
+        reads.colors(material);
+        if detail == Detail::Light {
+            reads.light(material);
         }
-        let Some(of_alpha) = material.alpha_texture.filter(|_| material.alpha != Alpha::Opaque) else { continue };
-        if let Some(image) = wanted.get_mut(of_alpha.texture.image) {
-            let channels = &mut image.get_or_insert_default().channels;
-            if !channels.contains(&of_alpha.channel) {
-                channels.push(of_alpha.channel);
+    }
+    reads.0
+}
+
+/// What is read, by image.
+struct Reads(Vec<Option<Wanted>>);
+
+impl Reads {
+    fn of(&mut self, image: usize) -> Option<&mut Wanted> {
+        Some(self.0.get_mut(image)?.get_or_insert_default())
+    }
+
+    fn color(&mut self, image: usize) {
+        if let Some(wanted) = self.of(image) {
+            wanted.color = true;
+        }
+    }
+
+    fn channel(&mut self, image: usize, channel: Channel) {
+        if let Some(wanted) = self.of(image).filter(|wanted| !wanted.channels.contains(&channel)) {
+            wanted.channels.push(channel);
+        }
+    }
+
+    fn colors(&mut self, material: &Material) {
+        if let Some(texture) = material.base_color_texture {
+            self.color(texture.image);
+        }
+        if let Some(alpha) = material.alpha_texture.filter(|_| material.alpha != Alpha::Opaque) {
+            self.channel(alpha.texture.image, alpha.channel);
+        }
+    }
+
+    fn light(&mut self, material: &Material) {
+        if let Some(texture) = material.emission_texture {
+            self.color(texture.image);
+        }
+        for value in material.surface_values() {
+            self.channel(value.texture.image, value.channel);
+        }
+        if let Some(normal) = material.normal_texture {
+            for channel in [Channel::Red, Channel::Green, Channel::Blue] {
+                self.channel(normal.texture.image, channel);
             }
         }
     }
-    wanted
 }

@@ -58,7 +58,18 @@ fn wall_at(size: u32, depth: f32) -> Base {
 fn picture(generation: u64, width: u32, height: u32, rgba: Vec<u8>, depth: Vec<f32>) -> Picture {
     let camera = Camera::framing(&Aabb::EMPTY, glam::Vec3::Z, glam::Vec3::Y, 1.0);
     let range = crate::render::Range { min: 0.0, max: 1.0 };
-    Picture { generation, request: 1, camera, width, height, rgba, depth: Arc::new(depth), range, progress: Default::default() }
+    Picture {
+        generation,
+        request: 1,
+        camera,
+        width,
+        height,
+        rgba,
+        depth: Arc::new(depth),
+        range,
+        progress: Default::default(),
+        shots: Vec::new(),
+    }
 }
 
 const YELLOW: [u8; 4] = [255, 230, 40, 255];

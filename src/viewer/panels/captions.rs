@@ -6,7 +6,7 @@ use eframe::egui::{Align2, Color32, Pos2, Rect, TextStyle, Ui, pos2, vec2};
 
 use crate::accel::cell::Layout;
 use crate::render::Range;
-use crate::render::colormap::viridis;
+use crate::render::colormap::{difference, viridis};
 use crate::viewer::format;
 use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
@@ -40,7 +40,7 @@ fn captions(state: &State) -> Vec<Caption> {
     let coarse = progress.map(|p| format!("1/{} resolution after {}", p.step, format::duration(p.secs)));
     let change = state.change.as_ref().filter(|(_, until)| *until > Instant::now()).map(|(text, _)| text.clone());
     let check = state.settings.workspace == Workspace::Check && !state.checks.caption.is_empty();
-    let marked = check.then(|| state.checks.caption.clone());
+    let marked = check.then(|| state.checks.caption.clone()).or_else(|| moment(state));
     let at = |at| move |text| Caption::new(at, text);
     let above = |text| Caption { row: 1, ..Caption::new(Align2::LEFT_BOTTOM, text) };
     let lines = [
@@ -63,10 +63,28 @@ fn showing(state: &State) -> String {
     format!("Showing {} of {}{beyond} boxes", format::count(c.shown as u64), format::count(c.total as u64))
 }
 
-/// What a heat map's colours stand for, if one is shown: their name and range.
-fn heat(state: &State) -> Option<(String, Range)> {
+/// What of a curve of errors is on the screen.
+fn moment(state: &State) -> Option<String> {
+    let errors = &state.errors;
+    let chosen = errors.chosen.filter(|_| state.is_held())?;
+    let live = errors.curves.get(chosen.curve)?;
+    let [clicked, kept] = [chosen.point, chosen.kept].map(|point| format::count(live.shots[point].samples.into()));
+    let instead = if clicked == kept { String::new() } else { format!(", as that of {clicked} was not kept") };
+    let what = if chosen.difference { "difference from the reference" } else { "picture" };
+    Some(format!("{}: {what} of {kept} spp{instead}", live.key.entry.short))
+}
+
+/// Colours from one end of a range, 0, to the other, 1.
+type Colors = fn(f32) -> [f32; 3];
+
+/// What colours stand for, if they are those of amounts: their name and range.
+fn heat(state: &State) -> Option<(String, Range, Colors)> {
+    if state.is_held() && state.errors.chosen.is_some_and(|chosen| chosen.difference) {
+        let range = state.on_screen()?.range;
+        return Some(("Brightness less the reference's".to_owned(), range, |t| difference(2.0 * t - 1.0)));
+    }
     let range = state.picture.as_ref().filter(|_| state.settings.mode.is_heat())?.range;
-    Some((format!("{} a ray", state.settings.mode.label()), range))
+    Some((format!("{} a ray", state.settings.mode.label()), range, viridis))
 }
 
 /// What is to be seen, in sentences.
@@ -84,7 +102,7 @@ pub fn describe(state: &State) -> String {
         sentences.push(format!("{structure}{depth}, {samples} samples a pixel"));
     }
     sentences.extend(captions(state).into_iter().map(|caption| caption.text));
-    sentences.extend(heat(state).map(|(name, range)| {
+    sentences.extend(heat(state).map(|(name, range, _)| {
         let (min, max) = (format::number(range.min.into()), format::number(range.max.into()));
         format!("Colours show {name}, from {min} to {max}")
     }));
@@ -106,8 +124,8 @@ pub fn show(ui: &Ui, rect: Rect, state: &State) {
     if let Some(left) = state.change.as_ref().and_then(|(_, until)| until.checked_duration_since(Instant::now())) {
         ui.ctx().request_repaint_after(left);
     }
-    if let Some((name, range)) = heat(state).filter(|_| state.model.is_some()) {
-        legend(ui, inner, name, range);
+    if let Some(heat) = heat(state).filter(|_| state.model.is_some()) {
+        legend(ui, inner, heat);
     }
 }
 
@@ -121,7 +139,7 @@ fn plate(ui: &Ui, at: Pos2, align: Align2, text: String) {
 }
 
 /// The colours of a heat map and what they stand for.
-fn legend(ui: &Ui, inner: Rect, name: String, range: Range) {
+fn legend(ui: &Ui, inner: Rect, (name, range, color): (String, Range, Colors)) {
     const STEPS: u32 = 48;
     let width = 48.0 * theme::GRID;
     let palette = Palette::in_ui(ui);
@@ -131,7 +149,7 @@ fn legend(ui: &Ui, inner: Rect, name: String, range: Range) {
     let bar = Rect::from_min_size(plate.left_top() + vec2(theme::GUTTER, 6.0 * theme::GRID), vec2(width, 2.0 * theme::GRID));
     for i in 0..STEPS {
         let x = |i: u32| bar.left() + bar.width() * i as f32 / STEPS as f32;
-        let [r, g, b] = viridis((i as f32 + 0.5) / STEPS as f32).map(|c| (c * 255.0) as u8);
+        let [r, g, b] = color((i as f32 + 0.5) / STEPS as f32).map(|c| (c * 255.0) as u8);
         let step = Rect::from_min_max(pos2(x(i), bar.top()), pos2(x(i + 1), bar.bottom()));
         ui.painter().rect_filled(step, 0.0, Color32::from_rgb(r, g, b));
     }

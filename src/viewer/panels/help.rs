@@ -34,7 +34,10 @@ pub fn show(ui: &Ui, state: &State, commands: &mut Commands) {
                 (format!("{}, {}", keys(&menu::UNDO), keys(&menu::REDO)), "Take back a choice, and make it again"),
                 (keys(&menu::OPEN), "Open a file"),
                 (keys(&menu::OPEN_PATH), "Open a path or a built-in scene"),
-                (format!("{}, {}", keys(&menu::VIEW), keys(&menu::CHECK)), "The workspaces: View, Check"),
+                (
+                    format!("{}, {}, {}", keys(&menu::VIEW), keys(&menu::COMPARE), keys(&menu::CHECK)),
+                    "The workspaces: View, Compare, Check",
+                ),
                 (keys(&menu::FULL_SCREEN), "Full screen"),
                 ("Esc".to_owned(), "Cancel what is going on"),
                 ("?".to_owned(), "This page"),

@@ -29,6 +29,8 @@ pub const CAMERA_BACK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, 
 pub const CAMERA_FORWARD: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowRight);
 /// Statistics and timings around the view.
 pub const VIEW: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F1);
+/// Curves of the picture's error around it.
+pub const COMPARE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F4);
 /// The stability lab and the model's check around it.
 pub const CHECK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F5);
 /// In and out of full screen.
@@ -92,6 +94,7 @@ pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
     on(&FRAME_ALL, Command::FrameAll);
     on(&PROJECTION, Command::ToggleProjection);
     on(&VIEW, Command::Workspace(Workspace::View));
+    on(&COMPARE, Command::Workspace(Workspace::Compare));
     on(&CHECK, Command::Workspace(Workspace::Check));
     on(&FULL_SCREEN, Command::FullScreen);
     on(&LARGER, Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));

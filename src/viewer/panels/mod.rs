@@ -1,9 +1,12 @@
 //! The panels of the window, one per file. A panel reads [`super::state::State`] and sends
 //! [`Command`]s; it changes nothing itself.
 
+pub mod axes;
 pub mod bars;
 pub mod captions;
 pub mod check;
+pub mod error_side;
+pub mod errors;
 pub mod help;
 pub mod menu;
 pub mod needs;
@@ -18,6 +21,7 @@ pub mod status;
 pub mod structure;
 pub mod timings;
 pub mod toolbar;
+pub mod tradeoffs;
 pub mod viewport;
 
 use eframe::egui::{self, RichText, Ui};

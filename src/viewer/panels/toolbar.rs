@@ -1,12 +1,13 @@
 //! The row above the viewport: structure, what is shown, depth.
 
-use eframe::egui::{Button, ComboBox, Slider, Ui};
+use eframe::egui::{Button, ComboBox, DragValue, Slider, Ui};
 
 use super::Commands;
 use crate::accel::cell::Layout;
 use crate::accel::registry;
 use crate::geometry::Axis;
-use crate::render::Mode;
+use crate::render::sampler::SamplerKind;
+use crate::render::{Curve, Mode};
 use crate::viewer::command::Command;
 use crate::viewer::state::State;
 use crate::viewer::theme;
@@ -16,6 +17,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.spacing_mut().slider_width = theme::SHORT_SLIDER;
     let look = |ui: &mut Ui, commands: &mut Commands| {
         mode(ui, state, commands);
+        if state.settings.mode == Mode::Path {
+            light(ui, state, commands);
+        }
         depth(ui, state, commands);
     };
     if ui.available_width() >= theme::ONE_ROW {
@@ -51,6 +55,35 @@ fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
     });
     combo.response.accessible_name("Picture").on_hover_text(chosen.help());
+}
+
+/// How light becomes colour, and the numbers that paths are made of.
+fn light(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let mut tone = state.settings.tone;
+    let stops = DragValue::new(&mut tone.exposure).range(-16.0..=16.0).speed(0.05).fixed_decimals(1).suffix(" EV");
+    ui.add(stops).on_hover_text("Exposure in stops: each doubles the light. Drag, or click to type.");
+    let combo = ComboBox::from_id_salt("tone").width(16.0 * theme::GRID).selected_text(tone.curve.label());
+    let combo = combo.show_ui(ui, |ui| {
+        for curve in Curve::ALL {
+            ui.selectable_value(&mut tone.curve, curve, curve.label());
+        }
+    });
+    combo
+        .response
+        .accessible_name("Tone")
+        .on_hover_text("What becomes of light that is too bright: white, or bent as film does.");
+    if tone != state.settings.tone {
+        commands.push(Command::Tone(tone));
+    }
+    let chosen = state.settings.sampler;
+    let combo = ComboBox::from_id_salt("sampler").selected_text(chosen.label()).show_ui(ui, |ui| {
+        for kind in SamplerKind::ALL {
+            if ui.selectable_label(kind == chosen, kind.label()).clicked() {
+                commands.push(Command::Sampler(kind));
+            }
+        }
+    });
+    combo.response.accessible_name("Sampler").on_hover_text("The numbers that samples are made of. All structures get the same.");
 }
 
 /// A grid has no depth: its cells are looked at in layers.

@@ -56,7 +56,7 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
     // A picture and the boxes over it are of one view, also while the next picture is on its way.
     let camera = state.picture.as_ref().map_or(state.camera, |p| p.camera);
     let aspect = size_px[0] as f32 / size_px[1] as f32;
-    let base = match &state.picture {
+    let base = match state.on_screen() {
         Some(picture) => Base::Picture(Arc::clone(picture)),
         None => Base::Raster(Raster {
             mesh: Arc::clone(&model.raster),

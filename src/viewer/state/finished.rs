@@ -7,7 +7,9 @@ use super::State;
 use crate::accel::BuildError;
 use crate::accel::stats::SahWeights;
 use crate::job::Outcome;
-use crate::scene::CameraSpec;
+use crate::render::Mode;
+use crate::scene::texture::Detail;
+use crate::scene::{CameraSpec, Material};
 use crate::viewer::history::{Choices, History, Kind};
 use crate::viewer::kept::Built;
 use crate::viewer::model::{self, Model};
@@ -49,13 +51,15 @@ impl State {
         (self.predicting, self.predicted) = (None, None);
         self.shared.give_back((self.model.take(), self.shown.take(), std::mem::take(&mut self.kept)));
         (self.picture, self.overlay, self.requested, self.collected_for) = (None, None, None, None);
+        self.shared.give_back(std::mem::take(&mut self.errors));
         self.picking = None;
-        (self.decoding, self.textures_are_there) = (None, false);
+        (self.decoding, self.textures) = (None, None);
         self.select(None);
         (self.seen, self.counted) = (None, None);
         (self.cameras, self.choices) = (History::default(), History::default());
         (self.needs, self.needing) = (None, None);
         self.timings = Timings::default();
+        (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
         self.checks.opened();
         if self.checks.selected.is_some_and(|cell| model::case_name(cell.case) == name) {
             self.checks.mark_case(&model.rays);
@@ -153,25 +157,37 @@ impl State {
         self.predicting = None;
     }
 
+    /// Which images the present picture needs: those that light asks for only where it is followed and there are some.
+    fn wanted_detail(&self) -> Detail {
+        let mapped = |material: &Material| material.has_surface_maps() || material.emission_texture.is_some();
+        let has_some = |model: &Model| model.scene.materials.iter().any(mapped);
+        let light = self.settings.mode == Mode::Path && self.model.as_ref().is_some_and(has_some);
+        if light { Detail::Light } else { Detail::Colors }
+    }
+
     /// Decodes the scene's images once its first picture is on the screen.
     pub(super) fn advance_textures(&mut self) {
         match self.decoding.take() {
-            Some(job) => match job.poll() {
-                Outcome::Running => self.decoding = Some(job),
+            Some((detail, job)) => match job.poll() {
+                Outcome::Running => self.decoding = Some((detail, job)),
                 Outcome::Done(Ok((looks, needs))) => {
                     if let Some(model) = &mut self.model {
                         (model.looks, model.needs) = (Arc::new(looks), needs.into());
                     }
-                    self.textures_are_there = true;
+                    self.textures = Some(detail);
                 }
-                Outcome::Done(Err(_)) | Outcome::Died => self.textures_are_there = true,
+                Outcome::Done(Err(_)) | Outcome::Died => self.textures = Some(detail),
             },
             None => {
-                if let (Some(model), false, true) = (&self.model, self.textures_are_there, self.seen.is_some())
+                let wanted = self.wanted_detail();
+                // Those of light hold those of colours.
+                let enough = self.textures == Some(Detail::Light) || self.textures == Some(wanted);
+                if let (Some(model), false, true) = (&self.model, enough, self.seen.is_some())
                     && !model.scene.images.is_empty()
                     && !self.is_measuring()
                 {
-                    self.decoding = workers::decode(&self.shared, Arc::clone(&model.scene)).ok();
+                    let job = workers::decode(&self.shared, Arc::clone(&model.scene), wanted).ok();
+                    self.decoding = job.map(|job| (wanted, job));
                 }
             }
         }

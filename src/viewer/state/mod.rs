@@ -3,9 +3,11 @@
 
 mod checking;
 mod dialog;
+mod erring;
 mod finished;
 mod keeping;
 mod refresh;
+mod trading;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,6 +17,7 @@ use std::time::{Duration, Instant};
 use super::checks::Checks;
 use super::command::Command;
 use super::dialogs::FileDialog;
+use super::errors::Errors;
 use super::gpu::Overlay;
 use super::graphics::Graphics;
 use super::history::{Choices, History, Kind};
@@ -25,6 +28,7 @@ use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
 use super::settings::Settings;
 use super::timings::Timings;
+use super::tradeoffs::Tradeoffs;
 use super::workers::{
     self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Needing, Picking, Plan, Predicting, Shared,
 };
@@ -33,7 +37,9 @@ use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
 use crate::render::progressive::Pause;
-use crate::render::{self, Mode, Picture, Range, Renderer};
+use crate::render::sampler::SamplerKind;
+use crate::render::{self, Mode, Picture, Range, Renderer, Tone};
+use crate::scene::texture::Detail;
 use crate::scene::{Camera, CameraSpec};
 use crate::task::Pool;
 use glam::Vec2;
@@ -68,6 +74,10 @@ pub struct State {
     pub timings: Timings,
     /// The Check workspace.
     pub checks: Checks,
+    /// The picture's error, in the Compare workspace.
+    pub errors: Errors,
+    /// Quality against its cost, there.
+    pub tradeoffs: Tradeoffs,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -117,9 +127,9 @@ pub struct State {
     predicting: Option<Predicting>,
     /// The structure whose predictions were asked for last.
     predicted: Option<Key>,
-    decoding: Option<Decoding>,
-    /// Whether decoding has come to its end.
-    textures_are_there: bool,
+    decoding: Option<(Detail, Decoding)>,
+    /// Which images are decoded, as far as they can be read.
+    textures: Option<Detail>,
     collecting: Option<(Wanted, Key, Collecting)>,
     collected_for: Option<(Wanted, Key)>,
     /// The boxes are those of the present view, structure and settings.
@@ -150,8 +160,14 @@ struct Asked {
     range: Option<Range>,
     size_px: [u32; 2],
     max_samples: u32,
-    /// Whether the textures were there.
-    textured: bool,
+    /// Which textures were there.
+    textured: Option<Detail>,
+    /// The numbers that samples are made of.
+    sampler: SamplerKind,
+    /// How light becomes colour.
+    tone: Tone,
+    /// Whether light is kept on its way.
+    keeps: bool,
 }
 
 /// How soon the first picture of a request was there.
@@ -189,6 +205,8 @@ impl State {
             collected: Collected::default(),
             timings: Timings::default(),
             checks: Checks::default(),
+            errors: Errors::default(),
+            tradeoffs: Tradeoffs::default(),
             picked: None,
             error: None,
             answer: None,
@@ -215,7 +233,7 @@ impl State {
             predicting: None,
             predicted: None,
             decoding: None,
-            textures_are_there: false,
+            textures: None,
             collecting: None,
             collected_for: None,
             overlay_is_current: false,
@@ -241,7 +259,7 @@ impl State {
 
     /// Whether work that must not be disturbed runs.
     pub fn is_measuring(&self) -> bool {
-        self.measuring.is_some() || self.needing.is_some()
+        self.measuring.is_some() || self.needing.is_some() || self.errors.making.is_some() || self.tradeoffs.running.is_some()
     }
 
     /// Whether the lab runs or the model is checked, which would disturb a measurement.
@@ -340,6 +358,17 @@ impl State {
             Command::CheckModel => self.check_model(),
             Command::CancelCheck => self.checks.checking = None,
             Command::MarkModel(which) => self.checks.mark_model(which),
+            Command::Tone(tone) => self.settings.tone = tone,
+            Command::Sampler(sampler) => self.settings.sampler = sampler,
+            Command::MakeReference => self.make_reference(),
+            Command::CancelReference => self.errors.making = None,
+            Command::Shot(chosen, difference) => self.choose_shot(chosen, difference),
+            Command::ErrorsAsTable(table) => self.errors.as_table = table,
+            Command::ErrorPlot(plot) => self.tradeoffs.plot = plot,
+            Command::Miss(miss) => self.tradeoffs.miss = miss,
+            Command::Goodness(goodness) => self.tradeoffs.goodness = goodness,
+            Command::MeasureTradeoffs => self.measure_tradeoffs(),
+            Command::CancelTradeoffs => self.tradeoffs.running = None,
             Command::Dismiss => self.error = None,
             Command::Memory(mib) => self.set_memory(mib),
             Command::Theme(theme) => self.settings.theme = theme,
@@ -479,13 +508,8 @@ impl State {
                 None => missing.push(key),
             }
         }
-        let view = render::Job {
-            scene: Arc::clone(&model.scene),
-            accel: Arc::clone(&shown.accel),
-            camera: self.camera,
-            mode: Mode::Shaded,
-            looks: Arc::clone(&model.looks),
-        };
+        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
+        let view = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
         self.building = None;
         Some(Plan { kept, missing, view, size_px: self.size_px })
     }
@@ -514,6 +538,8 @@ impl State {
         self.advance_check();
         self.follow_viewport();
         self.refresh_picture();
+        self.advance_errors();
+        self.advance_tradeoffs();
         self.advance_statistics();
         self.advance_prediction();
         self.advance_textures();

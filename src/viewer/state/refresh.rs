@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::{Answer, Asked, CHANGE_SHOWN, State};
 use crate::job::Outcome;
+use crate::render::sampler::Sampling;
 use crate::render::{self, Picture, Request};
 use crate::viewer::gpu::{Overlay, View};
 use crate::viewer::overlay::Wanted;
@@ -38,12 +39,19 @@ impl State {
             range: self.range,
             size_px: self.size_px,
             max_samples,
-            textured: self.textures_are_there,
+            textured: self.textures,
+            sampler: self.settings.sampler,
+            tone: self.settings.tone,
+            keeps: self.keeps_light(),
         };
         if self.requested.as_ref() != Some(&asked) && width > 0 && height > 0 {
             let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-            let job = render::Job { scene, accel, camera: self.camera, mode, looks: Arc::clone(&model.looks) };
-            let number = self.renderer.request(Request { job, width, height, max_samples, range: self.range });
+            let sampling = Sampling { kind: asked.sampler, seed: 0 };
+            let job = render::Job { sampling, ..render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks)) };
+            let keep = asked.keeps.then(|| self.shared.budget.clone());
+            let request = Request { job, width, height, max_samples, range: self.range, tone: asked.tone, keep };
+            let number = self.renderer.request(request);
+            self.follow_errors(&asked);
             self.requested = Some(Asked { number, ..asked });
             self.requested_at = Instant::now();
             self.renderer.wait_for(number, self.graphics.patience());

@@ -6,7 +6,8 @@ use gltf::json::{Root, buffer};
 use crate::scene::Reason;
 
 /// Those that are read.
-const READ: &[&str] = &["KHR_mesh_quantization", "KHR_texture_transform", "EXT_texture_webp", super::repeats::NAME];
+const READ: &[&str] =
+    &["KHR_mesh_quantization", "KHR_texture_transform", "EXT_texture_webp", super::lights::NAME, super::repeats::NAME];
 
 /// Those that change only how a surface or a light looks: a model can be traced without them.
 /// Beginnings of names, for they come in families.

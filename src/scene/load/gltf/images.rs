@@ -1,6 +1,7 @@
 //! The images that are seen: where they are, or a copy of their bytes. Of others nothing is kept, unless all is to be.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 use gltf::json::{Root, image::Image as Json};
@@ -9,8 +10,8 @@ use super::buffers::Buffers;
 use super::uri;
 use crate::scene::load::Siblings;
 use crate::scene::load::text::clipped;
-use crate::scene::texture::{Image, ImageSource, TextureUse, shown_materials};
-use crate::scene::{AlphaTexture, Keep, LoadCx, Reason, Scene};
+use crate::scene::texture::{Image, ImageSource, shown_materials};
+use crate::scene::{Keep, LoadCx, Reason, Scene};
 use crate::task::Charge;
 
 pub(super) struct Images<'a, 'b> {
@@ -27,21 +28,13 @@ impl Images<'_, '_> {
         let mut memory = self.cx.budget.charge(0)?;
         let mut taken: HashMap<usize, Option<usize>> = HashMap::new();
         for (m, shown) in shown_materials(scene).into_iter().enumerate() {
-            let Some(texture) = scene.materials[m].base_color_texture else { continue };
-            let index = match taken.get(&texture.image) {
-                _ if !shown => None,
-                Some(known) => *known,
-                None => {
-                    let new = self.add(texture.image, scene, &mut memory)?;
-                    taken.insert(texture.image, new);
-                    new
+            let images: Vec<usize> = scene.materials[m].images().filter(|_| shown).collect();
+            for image in images {
+                if let Entry::Vacant(place) = taken.entry(image) {
+                    place.insert(self.add(image, scene, &mut memory)?);
                 }
-            };
-            let material = &mut scene.materials[m];
-            let alpha = material.alpha_texture;
-            material.base_color_texture = index.map(|image| TextureUse { image, ..texture });
-            let of_alpha = material.base_color_texture.zip(alpha);
-            material.alpha_texture = of_alpha.map(|(texture, alpha)| AlphaTexture { texture, ..alpha });
+            }
+            scene.materials[m].renumber_images(|image| taken.get(&image).copied().flatten().filter(|_| shown));
         }
         if self.cx.keep == Keep::All {
             for image in (0..self.root.images.len()).filter(|image| !taken.contains_key(image)) {

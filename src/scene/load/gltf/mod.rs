@@ -12,6 +12,7 @@ mod container;
 mod document;
 mod extensions;
 mod images;
+mod lights;
 mod materials;
 mod nodes;
 mod picked;
@@ -23,7 +24,8 @@ mod uri;
 use std::ops::Range;
 
 use super::{Loader, Siblings, mesh_bytes};
-use crate::scene::{FirstView, Instance, Keep, LoadCx, Reason, Scene};
+use crate::scene::texture::shown_materials;
+use crate::scene::{FirstView, Instance, Keep, LoadCx, Material, Reason, Scene};
 use buffers::Buffers;
 use glam::Vec3;
 use gltf::json::Root;
@@ -46,9 +48,10 @@ impl Loader for Gltf {
         let (root, _memory) = document::parse(parts.json, cx)?;
         let mut warnings = extensions::check(&root)?;
         let buffers = Buffers::new(&root, parts.bin, files, cx)?;
-        let nodes::Walked { placements, camera, _memory } = nodes::walk(&root, &buffers, &mut warnings, cx)?;
+        let nodes::Walked { placements, camera, lights, _memory } = nodes::walk(&root, &buffers, &mut warnings, cx)?;
         let camera = camera.map(FirstView::Stored);
-        let mut scene = Scene { materials: materials::all(&root), up: Vec3::Y, camera, warnings, ..Scene::default() };
+        let _materials = cx.budget.charge((root.materials.len() * size_of::<Material>()) as u64)?;
+        let mut scene = Scene { materials: materials::all(&root), lights, up: Vec3::Y, camera, warnings, ..Scene::default() };
         let meshes = meshes(&root, &buffers, &placements, &mut scene, cx)?;
         let mut memory = cx.budget.charge(0)?;
         for (mesh, world_from_object) in placements {
@@ -60,6 +63,7 @@ impl Loader for Gltf {
         if root.nodes.is_empty() && !scene.instances.is_empty() {
             scene.warnings.push("The file places its meshes nowhere; each is shown once, where it is.".to_owned());
         }
+        scene.warnings.extend(textures::sentence(&root, &shown_materials(&scene)));
         images::Images { root: &root, buffers: &buffers, files, cx }.take(&mut scene)?;
         Ok(scene)
     }

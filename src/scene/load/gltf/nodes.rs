@@ -1,4 +1,4 @@
-//! The node hierarchy, flattened to where meshes stand and the camera does.
+//! The node hierarchy, flattened to where meshes stand, and the camera and lights do.
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, Mat3A, Vec3A};
 use gltf::json::scene::Node;
@@ -6,8 +6,9 @@ use gltf::json::{Index, Root};
 
 use super::buffers::Buffers;
 use super::cameras::Cameras;
+use super::lights::Lights;
 use super::repeats;
-use crate::scene::{LoadCx, Reason, StoredCamera};
+use crate::scene::{Light, LoadCx, Reason, StoredCamera};
 use crate::task::Charge;
 
 /// A mesh of the document, and where it stands.
@@ -19,7 +20,9 @@ pub(super) struct Walked {
     pub placements: Vec<Placement>,
     /// The first camera that makes a picture.
     pub camera: Option<StoredCamera>,
-    /// Of repeated meshes: a short file may repeat a long list many times.
+    /// The lights that shine.
+    pub lights: Vec<Light>,
+    /// Of repeated meshes and of lights: a short file may repeat a long list, or a long name, many times.
     pub _memory: Charge,
 }
 
@@ -30,7 +33,7 @@ pub(super) fn walk(root: &Root, buffers: &Buffers, warnings: &mut Vec<String>, c
     // A stack of our own: a chain of nodes may be as long as the file.
     let mut stack: Vec<_> = roots(root)?.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
     let mut visited = vec![false; root.nodes.len()];
-    let (mut left_out, mut cameras) = (LeftOut::default(), Cameras::default());
+    let (mut left_out, mut cameras, mut lights) = (LeftOut::default(), Cameras::default(), Lights::default());
     while let Some((index, world_from_parent)) = stack.pop() {
         let place = format!("node {}", index.value());
         let node = root.get(index).ok_or_else(|| Reason::malformed(&place, "there is no such node"))?;
@@ -52,14 +55,17 @@ pub(super) fn walk(root: &Root, buffers: &Buffers, warnings: &mut Vec<String>, c
         if let Some(camera) = node.camera {
             cameras.offer(root, index.value(), camera, &world_from_node);
         }
+        if let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) {
+            lights.offer(root, index.value(), light.light, &world_from_node, &mut memory)?;
+        }
         stack.extend(node.children.iter().flatten().rev().map(|child| (*child, world_from_node)));
     }
-    warnings.extend(left_out.sentences().chain(cameras.sentence()));
+    warnings.extend(left_out.sentences().chain(cameras.sentence()).chain(lights.sentence()));
     if root.nodes.is_empty() && !root.meshes.is_empty() {
         // Placed nowhere: show each once, where it is.
         placements.extend((0..root.meshes.len()).map(|mesh| (mesh, Affine3A::IDENTITY)));
     }
-    Ok(Walked { placements, camera: cameras.found, _memory: memory })
+    Ok(Walked { placements, camera: cameras.found, lights: lights.found, _memory: memory })
 }
 
 /// The nodes that the walk begins with: of the default scene, or else the first, or else those

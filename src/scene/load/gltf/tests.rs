@@ -1,3 +1,5 @@
+mod lights;
+mod maps;
 mod textures;
 
 use super::super::tests::{Beside, check, load, soup};

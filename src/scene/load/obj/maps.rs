@@ -5,7 +5,7 @@
 use crate::scene::load::text::{float, lossy};
 use crate::scene::texture::{Channel, Sampler, UvTransform, Wrap};
 
-/// A `map_Kd` or `map_d` statement.
+/// A `map_Kd` statement, or another that names an image.
 #[derive(Debug, PartialEq)]
 pub(super) struct Map {
     /// The file as it is written.

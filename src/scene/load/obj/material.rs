@@ -4,7 +4,7 @@ use super::statements::values;
 use crate::scene::load::text::{Line, float};
 use crate::scene::load::unit;
 use crate::scene::texture::Channel;
-use crate::scene::{Alpha, AlphaTexture, Material};
+use crate::scene::{Alpha, Material, ValueTexture};
 
 /// A material whose statements are being read.
 pub(super) struct Draft {
@@ -72,6 +72,16 @@ impl Draft {
         if let Some(shininess) = self.shininess.filter(|_| self.is_shiny && !self.roughness_said) {
             material.roughness = (2.0 / (shininess + 2.0)).sqrt().sqrt();
         }
+        // What an image is multiplied by: where nothing is said of it, or that it is 0, the image alone is meant.
+        if material.roughness_texture.is_some() && (!self.roughness_said || material.roughness == 0.0) {
+            material.roughness = 1.0;
+        }
+        if material.metallic_texture.is_some() && material.metallic == 0.0 {
+            material.metallic = 1.0;
+        }
+        if material.emission_texture.is_some() && material.emission == [0.0; 3] {
+            material.emission = [1.0; 3];
+        }
         let [r, g, b, a] = &mut material.base_color;
         // `map_Kd` is multiplied by `Kd`. Black is written by programs that mean the image alone,
         // and would make it pointless.
@@ -79,7 +89,7 @@ impl Draft {
             (*r, *g, *b) = (1.0, 1.0, 1.0);
         }
         // Of an image that gives the colour too, only the alpha channel can be meant.
-        if let (Some(color), Some(AlphaTexture { texture, channel: channel @ Channel::Mask })) =
+        if let (Some(color), Some(ValueTexture { texture, channel: channel @ Channel::Mask })) =
             (&material.base_color_texture, &mut material.alpha_texture)
             && color.image == texture.image
         {

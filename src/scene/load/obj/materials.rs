@@ -10,7 +10,7 @@ use super::statements::Statements;
 use crate::scene::load::Siblings;
 use crate::scene::load::text::{lossy, without_mark, words};
 use crate::scene::texture::{Channel, Image, ImageSource, TextureUse};
-use crate::scene::{AlphaTexture, LoadCx, Reason, Scene};
+use crate::scene::{LoadCx, Material, NormalTexture, Reason, Scene, ValueTexture};
 use crate::task::Charge;
 
 pub(super) struct Materials<'a> {
@@ -30,8 +30,47 @@ pub(super) struct Materials<'a> {
 }
 
 /// What a byte of text may become: "newmtl a" takes nine, a material and its name in the table
-/// not much over two hundred.
-const SPREAD: u64 = 32;
+/// not much over five hundred.
+const SPREAD: u64 = 64;
+
+/// What is read from an image.
+#[derive(Clone, Copy)]
+enum Reads {
+    Color,
+    Opacity,
+    Emission,
+    Roughness,
+    Metallic,
+    Normals,
+}
+
+impl Reads {
+    /// What a statement means that names an image. `bump` names one of heights, which is not read.
+    fn of(word: &[u8]) -> Option<Self> {
+        const WORDS: &[(&[u8], Reads)] = &[
+            (b"map_Kd", Reads::Color),
+            (b"map_d", Reads::Opacity),
+            (b"map_Ke", Reads::Emission),
+            // The extension for physically based materials.
+            (b"map_Pr", Reads::Roughness),
+            (b"map_Pm", Reads::Metallic),
+            (b"norm", Reads::Normals),
+        ];
+        WORDS.iter().find(|(known, _)| known.eq_ignore_ascii_case(word)).map(|(_, reads)| *reads)
+    }
+
+    fn note(self, material: &mut Material, texture: TextureUse, channel: Option<Channel>) {
+        let value = |or: Channel| Some(ValueTexture { texture, channel: channel.unwrap_or(or) });
+        match self {
+            Self::Color => material.base_color_texture = Some(texture),
+            Self::Opacity => material.alpha_texture = value(Channel::Mask),
+            Self::Emission => material.emission_texture = Some(texture),
+            Self::Roughness => material.roughness_texture = value(Channel::Luminance),
+            Self::Metallic => material.metallic_texture = value(Channel::Luminance),
+            Self::Normals => material.normal_texture = Some(NormalTexture { texture, scale: 1.0 }),
+        }
+    }
+}
 
 /// Names that were not found: how many, and the first few.
 #[derive(Default)]
@@ -102,8 +141,8 @@ impl<'a> Materials<'a> {
                 self.found.push(Draft::new(name));
             } else if self.found.len() == before {
                 // Of no material.
-            } else if word.eq_ignore_ascii_case(b"map_Kd") || word.eq_ignore_ascii_case(b"map_d") {
-                self.map(word, line.tail(), folder)?;
+            } else if let Some(reads) = Reads::of(word) {
+                self.map(reads, line.tail(), folder)?;
             } else if let Some(draft) = self.found.last_mut() {
                 draft.set(word, &line);
             }
@@ -112,16 +151,12 @@ impl<'a> Materials<'a> {
     }
 
     /// A statement that names an image, of the last material.
-    fn map(&mut self, word: &[u8], tail: &[u8], folder: &str) -> Result<(), Reason> {
+    fn map(&mut self, reads: Reads, tail: &[u8], folder: &str) -> Result<(), Reason> {
         let Some(Map { file, sampler, transform, channel }) = maps::parse(tail) else { return Ok(()) };
         let Some(image) = self.image(file, folder)? else { return Ok(()) };
         let texture = TextureUse { image, sampler, transform };
         let Some(Draft { material, .. }) = self.found.last_mut() else { return Ok(()) };
-        if word.eq_ignore_ascii_case(b"map_Kd") {
-            material.base_color_texture = Some(texture);
-        } else {
-            material.alpha_texture = Some(AlphaTexture { texture, channel: channel.unwrap_or(Channel::Mask) });
-        }
+        reads.note(material, texture, channel);
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::scene::texture::tests::png;
-use crate::scene::texture::{Filter, ImageSource, Textures, Wrap};
+use crate::scene::texture::{Detail, Filter, ImageSource, Textures, Wrap};
 use crate::scene::{Alpha, Material};
 use glam::Vec2;
 
@@ -9,7 +9,7 @@ const GREEN: [u8; 4] = [0, 255, 0, 255];
 
 /// A strip of two triangles with two sets of texture coordinates, the second the other way round,
 /// made of material 0.
-fn square(materials: &Value) -> Model {
+pub(super) fn square(materials: &Value) -> Model {
     let mut model = Model::square();
     let uvs = [[0f32, 0.], [1., 0.], [0., 1.], [1., 1.]];
     let mut set = |uvs: [[f32; 2]; 4]| {
@@ -35,7 +35,7 @@ fn textured(more: &Value) -> Value {
     json!([material])
 }
 
-fn first(materials: &Value) -> (Scene, Material) {
+pub(super) fn first(materials: &Value) -> (Scene, Material) {
     let scene = read(&square(materials).text());
     let material = scene.materials[0].clone();
     (scene, material)
@@ -49,7 +49,7 @@ fn the_colour_is_an_image() {
     assert_eq!((sampler.wrap_u, sampler.wrap_v, sampler.filter), (Wrap::Clamp, Wrap::Mirror, Filter::Nearest));
     assert_eq!((texture.image, scene.images.len(), scene.meshes[0].uvs[1]), (0, 1, Vec2::X));
     assert_eq!((material.alpha, material.alpha_texture), (Alpha::Opaque, None));
-    let textures = Textures::decode(&scene, &LoadCx::unattended()).expect("not cancelled");
+    let textures = Textures::decode(&scene, Detail::Colors, &LoadCx::unattended()).expect("not cancelled");
     assert_eq!(textures.get(0).expect("an image").color(Vec2::new(0.75, 0.5), &sampler), [0.0, 1.0, 0.0, 1.0]);
 }
 
@@ -108,7 +108,7 @@ fn what_is_not_seen_is_not_kept() {
 fn a_broken_image_is_a_warning() {
     let broken = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 2}}}]);
     let (scene, _) = first(&broken);
-    let textures = Textures::decode(&scene, &LoadCx::unattended()).expect("not cancelled");
+    let textures = Textures::decode(&scene, Detail::Colors, &LoadCx::unattended()).expect("not cancelled");
     assert!(textures.get(0).is_none() && textures.warnings()[0].starts_with("The image 1 can't be read, and is white: "));
     for (image, why) in [
         (json!({}), "image 1: it has neither a bufferView nor a URI"),

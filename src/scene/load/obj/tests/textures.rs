@@ -86,3 +86,36 @@ fn the_factor_of_an_image() {
     assert_eq!(color("Kd 0.5\nmap_Kd x.png"), [0.5, 0.5, 0.5, 1.0]);
     assert_eq!(color("Kd 0 0 0"), [0.0, 0.0, 0.0, 1.0]);
 }
+
+#[test]
+fn maps_of_what_paths_of_light_need() {
+    let all = "map_Ke glow.png\nmap_Pr -imfchan g orm.png\nmap_Pm -imfchan b -o 0.5 orm.png\nnorm -clamp on bumps.png\nmap_Bump no.png\nbump no.png";
+    let scene = scene("x.mtl", &format!("newmtl a\nKe 0 0 0\n{all}\n"));
+    let material = &scene.materials[0];
+    assert_eq!(scene.images.iter().map(|image| image.name.as_str()).collect::<Vec<_>>(), ["glow.png", "orm.png", "bumps.png"]);
+    assert!(!scene.meshes[0].uvs.is_empty() && material.base_color_texture.is_none());
+    assert_eq!((material.emission, material.emission_texture.map(|t| t.image)), ([1.0; 3], Some(0)));
+    let [rough, metal] = [material.roughness_texture, material.metallic_texture].map(|map| map.expect("a texture"));
+    assert_eq!((rough.texture.image, rough.channel), (1, Channel::Green));
+    assert_eq!((metal.texture.image, metal.channel), (1, Channel::Blue));
+    assert_eq!(metal.texture.transform.apply(glam::Vec2::ZERO).to_array(), [0.5, 1.0]);
+    assert_eq!((material.roughness, material.metallic), (1.0, 1.0));
+    let normal = material.normal_texture.expect("a texture");
+    assert_eq!((normal.texture.image, normal.texture.sampler.wrap_u, normal.scale), (2, Wrap::Clamp, 1.0));
+}
+
+#[test]
+fn factors_of_what_paths_of_light_need() {
+    let of = |statements: &str| {
+        let Material { emission, roughness, metallic, roughness_texture, .. } =
+            scene("x.mtl", &format!("newmtl a\n{statements}\n")).materials[0].clone();
+        (emission, roughness, metallic, roughness_texture.map(|map| map.channel))
+    };
+    let dark = [0.0; 3];
+    assert_eq!(of("map_ke x.png\nKe 0.5 0.25 0"), ([0.5, 0.25, 0.0], 1.0, 0.0, None));
+    assert_eq!(of("map_ke x.png"), ([1.0; 3], 1.0, 0.0, None));
+    assert_eq!(of("Ks 1 1 1\nNs 100\nmap_Pr x.png"), (dark, 1.0, 0.0, Some(Channel::Luminance)));
+    assert_eq!(of("Pr 0.5\nmap_Pr x.png\nPm 0.25\nmap_Pm y.png"), (dark, 0.5, 0.25, Some(Channel::Luminance)));
+    assert_eq!(of("Pr 0\nmap_Pr x.png\nPm 0\nmap_Pm y.png"), (dark, 1.0, 1.0, Some(Channel::Luminance)));
+    assert_eq!(of("Pr 0\nPm 0"), (dark, 0.0, 0.0, None));
+}

@@ -1,0 +1,393 @@
+//! `boxwood converge`: image error against run time.
+
+use std::fs;
+use std::io::{BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::args::{AroundArgs, LookArgs, ModelArgs, SceneArgs, SeedArgs, Size, TransportArgs, seconds};
+use super::bar;
+use super::context::Context;
+use super::failure::Failure;
+use super::output::{OutFile, print, print_json, warn};
+use super::plot::{Curve as Plotted, Dot, Panel, log_log, png_of};
+use super::structures::{BuildArgs, Many, each_once};
+use super::table::{Table, facts};
+use crate::lab::converge::{
+    self, ConvergeCx, ConvergeError, ConvergeOptions, Convergence, Curve, REFERENCE_FACTOR, Reference, Rendered, Runner,
+};
+use crate::lab::format::{MISSING, count, duration, number, or_missing, percent, rate};
+use crate::lab::{MachineFacts, Metric, SceneFacts};
+use crate::render::sampler::SamplerKind;
+use crate::render::{Job, LinearPicture, Mode, Transport};
+use crate::scene::CameraSpec;
+use crate::scene::texture::Detail;
+use crate::task::{Cancel, Progress};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    model: ModelArgs,
+    /// The structures: ids between commas, or all.
+    #[arg(long, value_name = "all|ID,ID", default_value = "wide,bvh,kdtree,grid2")]
+    structures: Many,
+    /// The samplers, between commas: independent, sobol, blue-noise.
+    #[arg(long, value_name = "SAMPLERS", value_delimiter = ',', default_value = "independent,sobol")]
+    samplers: Vec<SamplerKind>,
+    /// The most samples a pixel.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    spp: u32,
+    /// The most seconds that each structure and sampler renders for, once; slow ones get to fewer samples.
+    #[arg(long, value_name = "SECS", value_parser = seconds)]
+    seconds: Option<f64>,
+    /// How often each is timed, in turns.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=99))]
+    runs: u32,
+    /// Columns and rows.
+    #[arg(long, value_name = "WxH", default_value = "256x160")]
+    size: Size,
+    /// The folder for the reference, the plots and the data. A reference in it is used again if it is of the same.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// No more samples for pixels that have converged to half a step of 256. It biases every picture, which is told.
+    #[arg(long)]
+    adaptive: bool,
+    #[command(flatten)]
+    seed: SeedArgs,
+    #[command(flatten)]
+    around: AroundArgs,
+    #[command(flatten)]
+    transport: TransportArgs,
+    #[command(flatten)]
+    look: LookArgs,
+    #[command(flatten)]
+    build: BuildArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is written as JSON.
+#[derive(Serialize)]
+pub struct Outcome {
+    /// Grows when a name changes its meaning.
+    version: u32,
+    scene: SceneFacts,
+    machine: MachineFacts,
+    size: [u32; 2],
+    seed: u32,
+    runs: u32,
+    transport: Transport,
+    /// What is around the scene.
+    surroundings: String,
+    /// Whether converged pixels got no more samples: errors are then those of biased pictures.
+    adaptive: bool,
+    metrics: Vec<[&'static str; 2]>,
+    #[serde(flatten)]
+    convergence: Convergence,
+    /// Structures that are missing, and why.
+    missing: Vec<[String; 2]>,
+}
+
+pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
+    let Many(entries) = &args.structures;
+    let params = args.build.params(entries)?;
+    let folder = Folder::at(&args.output)?;
+    let cx = Context::new(args.model.machine, cancel);
+    let model = cx.load_with_instances(&args.model.model, args.scene)?;
+    let looks = Arc::new(cx.looks(&model, Detail::Light)?.within(args.around.surroundings(&cx)?));
+    let (mut runners, mut missing) = (Vec::new(), Vec::new());
+    for (entry, params) in entries.iter().zip(&params) {
+        match cx.build(entry, &model, args.build.test, params) {
+            Ok(built) => runners.push(Runner { id: entry.id.to_owned(), accel: built.accel, build_secs: built.build_secs }),
+            Err(crate::accel::BuildError::Cancelled(_)) => return Err(Failure::Cancelled),
+            Err(error) => {
+                warn(&format!("{} is left out: {error}", entry.id));
+                missing.push([entry.id.to_owned(), error.to_string()]);
+            }
+        }
+    }
+    let Some(first) = runners.first() else {
+        return Err(Failure::Input("none of the structures could be built".to_owned()));
+    };
+    let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
+    let scene_facts = model.facts();
+    let job = Job {
+        transport: args.transport.transport(),
+        ..Job::new(Arc::clone(&model.scene), Arc::clone(&first.accel), camera, Mode::Path, looks)
+    };
+    let progress = Progress::new();
+    let converge_cx =
+        ConvergeCx { pool: cx.pool.clone(), cancel: cx.cancel.clone(), progress: progress.clone(), budget: cx.budget.clone() };
+    let options = args.options();
+    let rendered = bar::watch("converge", &progress, || converge::render(&job, &runners, &options, &converge_cx))?;
+    let reference = reference(&job, &rendered, &options, &folder, &converge_cx)?;
+    let outcome = Outcome {
+        version: 1,
+        scene: scene_facts,
+        machine: cx.machine(),
+        size: options.size,
+        seed: options.seed,
+        runs: options.runs,
+        transport: job.transport,
+        surroundings: job.looks.surroundings().describe(),
+        adaptive: options.adaptive,
+        metrics: Metric::ALL.map(|metric| [metric.label(), metric.formula()]).into(),
+        convergence: converge::evaluate(&rendered, &reference),
+        missing,
+    };
+    write(&outcome, &folder, &cx.cancel)?;
+    if args.json { print_json(&outcome) } else { print(&text(args, &outcome)) }
+}
+
+impl Args {
+    fn options(&self) -> ConvergeOptions {
+        ConvergeOptions {
+            size: [self.size.width, self.size.height],
+            spp: self.spp,
+            secs: self.seconds,
+            runs: self.runs,
+            samplers: each_once(self.samplers.clone()),
+            seed: self.seed.seed,
+            adaptive: self.adaptive,
+        }
+    }
+}
+
+impl From<ConvergeError> for Failure {
+    fn from(error: ConvergeError) -> Self {
+        match error {
+            ConvergeError::Cancelled(_) => Self::Cancelled,
+            error @ ConvergeError::Memory(_) => Self::Other(error.into()),
+        }
+    }
+}
+
+/// Where everything goes.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn at(path: &Path) -> Result<Self, Failure> {
+        fs::create_dir_all(path).map_err(|error| Failure::of_output(path, &error))?;
+        Ok(Self(path.to_owned()))
+    }
+
+    fn file(&self, name: &str) -> Result<OutFile, Failure> {
+        OutFile::at(&self.0.join(name))
+    }
+
+    fn write(&self, name: &str, bytes: &[u8], cancel: &Cancel) -> Result<(), Failure> {
+        self.file(name)?.write(cancel, |out| out.write_all(bytes))
+    }
+}
+
+const REFERENCE: &str = "reference.exr";
+
+/// The reference of the folder if it will do, or else a new one, which is kept there.
+fn reference(
+    job: &Job,
+    rendered: &Rendered,
+    options: &ConvergeOptions,
+    folder: &Folder,
+    cx: &ConvergeCx,
+) -> Result<Reference, Failure> {
+    let most = rendered.lanes.iter().filter_map(|lane| lane.shots.last()).map(|shot| shot.spp).max().unwrap_or(1);
+    let spp = most.saturating_mul(REFERENCE_FACTOR);
+    let kept = fs::File::open(folder.0.join(REFERENCE)).ok().and_then(|file| LinearPicture::read(BufReader::new(file)).ok());
+    if let Some(kept) = kept.and_then(Reference::from_picture).filter(|kept| kept.suits(job, options.size, spp)) {
+        return Ok(kept);
+    }
+    let with = (&cx.pool, &cx.cancel, &cx.progress);
+    let made = bar::watch("reference", &cx.progress, || Reference::render(job, options.size, spp, with))?;
+    let picture = made.to_picture();
+    folder.file(REFERENCE)?.write(&cx.cancel, |out| picture.write(out).map_err(std::io::Error::other))?;
+    Ok(made)
+}
+
+fn write(outcome: &Outcome, folder: &Folder, cancel: &Cancel) -> Result<(), Failure> {
+    let json = serde_json::to_vec_pretty(outcome).map_err(|error| Failure::Other(error.into()))?;
+    folder.write("convergence.json", &json, cancel)?;
+    folder.write("convergence.csv", csv(&outcome.convergence.curves).as_bytes(), cancel)?;
+    for (name, panel) in panels(outcome) {
+        let svg = log_log(&[panel]).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
+        let png = png_of(&svg).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
+        folder.write(&format!("{name}.svg"), svg.as_bytes(), cancel)?;
+        folder.write(&format!("{name}.png"), &png, cancel)?;
+    }
+    Ok(())
+}
+
+fn csv(curves: &[Curve]) -> String {
+    let mut out = "structure,sampler,build_secs,spp,secs,secs_min,secs_max,rmse,relmse,mae,smape,flip,hollow\n".to_owned();
+    for curve in curves {
+        for p in &curve.points {
+            let e = &p.errors;
+            let flip = e.flip.map_or(String::new(), |flip| flip.to_string());
+            out += &format!(
+                "{},{},{},{},{},{},{},{},{},{},{},{flip},{}\n",
+                curve.structure,
+                curve.sampler.id(),
+                curve.build_secs,
+                p.spp,
+                p.secs,
+                p.secs_min,
+                p.secs_max,
+                e.rmse,
+                e.relmse,
+                e.mae,
+                e.smape,
+                p.hollow
+            );
+        }
+    }
+    out
+}
+
+/// Error against samples, and against seconds.
+fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
+    let curves = &outcome.convergence.curves;
+    let several = curves.iter().any(|c| c.sampler != curves[0].sampler);
+    let plotted = |curve: &Curve, of_secs: bool| {
+        let dot = |p: &converge::Point| Dot {
+            at: (if of_secs { p.secs } else { f64::from(p.spp) }, p.errors.rmse),
+            span: of_secs.then_some((p.secs_min, p.secs_max)),
+            hollow: p.hollow,
+        };
+        let name = if several { format!("{}, {}", curve.structure, curve.sampler.id()) } else { curve.structure.clone() };
+        let dashed = curve.sampler != curves[0].sampler;
+        Plotted { id: curve.structure.clone(), name, dashed, points: curve.points.iter().map(dot).collect() }
+    };
+    let reference = &outcome.convergence.reference;
+    let panel = |title: &str, x: &'static str, of_secs: bool| Panel {
+        title: format!("{}: {title}, reference of {} spp", outcome.scene.path, count(reference.spp.into())),
+        axes: [x, "RMSE of linear light"],
+        curves: curves.iter().map(|curve| plotted(curve, of_secs)).collect(),
+        guide: Some(("slope -1/2", |x| x.powf(-0.5))),
+    };
+    [
+        ("error-samples", panel("error against samples", "samples a pixel", false)),
+        ("error-seconds", panel("error against seconds", "seconds from the end of the build", true)),
+    ]
+}
+
+fn text(args: &Args, outcome: &Outcome) -> String {
+    let Convergence { reference, curves, coincide, agreements, tables } = &outcome.convergence;
+    let machine = &outcome.machine;
+    let [width, height] = outcome.size;
+    let sure = format!("{} spp, noise {:.2e}", count(reference.spp.into()), reference.noise);
+    let mut lines = vec![
+        ("model", format!("{}: {} triangles, {width}x{height}", outcome.scene.path, count(outcome.scene.triangles))),
+        ("machine", format!("{}, {} cores, {} threads", machine.cpu, machine.cores, machine.threads)),
+        ("reference", format!("{sure}; points below 4 times that are hollow, and left out of slopes")),
+        ("samples", format!("seed {}, {} runs in turns", outcome.seed, outcome.runs)),
+    ];
+    if outcome.adaptive {
+        lines.push(("adaptive", "converged pixels got no more samples: every error is that of a biased picture".to_owned()));
+    }
+    if let Some(most) = outcome.transport.clamp {
+        lines.push(("clamped", format!("light over two and more surfaces to {most} a sample, in the reference too")));
+    }
+    let mut out = facts(&lines);
+    let mut table = Table::new(&[
+        "structure",
+        "sampler",
+        "build",
+        "spp",
+        "seconds",
+        "min",
+        "max",
+        "RMSE",
+        "relMSE",
+        "MAE",
+        "SMAPE",
+        "slope",
+        "95 %",
+        "1/(MSE s)",
+    ]);
+    for curve in curves {
+        let Some(last) = curve.points.last() else { continue };
+        let slope = curve.slope.map_or([MISSING.to_owned(), MISSING.to_owned()], |slope| {
+            [format!("{:.3}", slope.value), format!("{:.3} to {:.3}", slope.low, slope.high)]
+        });
+        let errors = [last.errors.rmse, last.errors.relmse, last.errors.mae, last.errors.smape];
+        let secs = [last.secs, last.secs_min, last.secs_max].map(duration);
+        let head = [curve.structure.clone(), curve.sampler.id().to_owned(), duration(curve.build_secs), last.spp.to_string()];
+        let efficiency = curve.efficiency.map_or(MISSING.to_owned(), number);
+        let cells = head.into_iter().chain(secs).chain(errors.map(|e| format!("{e:.3e}"))).chain(slope).chain([efficiency]);
+        table.row(cells.collect());
+    }
+    out += &format!("\n{}", table.render());
+    let mut speed = Table::new(&["structure", "sampler", "rays/s", "rays/sample", "tracing", "shading", "the rest"]);
+    for curve in curves {
+        let [tracing, shading, rest] = curve.shares.map(percent);
+        let pixels = f64::from(width) * f64::from(height);
+        let rays = number(curve.rays_per_sample / pixels);
+        speed.row(vec![
+            curve.structure.clone(),
+            curve.sampler.id().to_owned(),
+            rate(curve.rays_per_sec),
+            rays,
+            tracing,
+            shading,
+            rest,
+        ]);
+    }
+    out += &format!("\n{}", speed.render());
+    let mut same = Table::new(&["structure", "same as the first", "pixels", "RMSE by", "rays", "near ties", "wrong"]);
+    for a in agreements {
+        let verdict = if a.identical {
+            "to the bit"
+        } else if a.coincides {
+            "but for near ties"
+        } else {
+            "NO"
+        };
+        same.row(vec![
+            a.structure.clone(),
+            verdict.to_owned(),
+            count(a.pixels),
+            percent(a.rmse_difference),
+            count(a.rays.rays),
+            count(a.rays.near_ties),
+            count(a.rays.wrong),
+        ]);
+    }
+    let verdict = if *coincide { "coincide" } else { "DO NOT coincide" };
+    out += &format!("\nAgainst samples all curves {verdict}.\n{}", same.render());
+    let mut equal = Table::new(&["structure", "sampler", "at", "RMSE", "down to", "takes", "with the build"]);
+    for curve in curves {
+        let at_time = tables.equal_time.iter().find(|row| (&row.structure, row.sampler) == (&curve.structure, curve.sampler));
+        let at_error = tables.equal_error.iter().find(|row| (&row.structure, row.sampler) == (&curve.structure, curve.sampler));
+        let error = |rmse: f64| format!("{rmse:.3e}");
+        equal.row(vec![
+            curve.structure.clone(),
+            curve.sampler.id().to_owned(),
+            or_missing(at_time, |row| duration(row.secs)),
+            or_missing(at_time, |row| error(row.rmse)),
+            or_missing(at_error, |row| error(row.rmse)),
+            or_missing(at_error, |row| duration(row.secs)),
+            or_missing(at_error, |row| duration(row.secs_with_build)),
+        ]);
+    }
+    out += &format!("\nAt the same time, and at the same error:\n{}", equal.render());
+    if !tables.break_even.is_empty() {
+        let mut pays = Table::new(&["better", "than", "after rays", "samples", "seconds"]);
+        for b in &tables.break_even {
+            pays.row(vec![b.better.clone(), b.quick.clone(), number(b.rays), number(b.spp), duration(b.secs)]);
+        }
+        out += &format!("\nFrom when on a slower build pays, build and all:\n{}", pays.render());
+    }
+    out += "\n";
+    let flip = curves.iter().flat_map(|c| &c.points).any(|p| p.errors.flip.is_some());
+    for metric in Metric::ALL.into_iter().filter(|metric| flip || *metric != Metric::Flip) {
+        out += &format!("{}: {}\n", metric.label(), metric.formula());
+    }
+    out + &format!(
+        "Over all pixels and red, green and blue of linear light, black where nothing is. Plots and data: {}\n",
+        args.output.display()
+    )
+}

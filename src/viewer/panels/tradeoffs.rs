@@ -1,0 +1,142 @@
+//! Quality against its cost: a point for each variant, or for each triangle test in it; those that no other beats at both are
+//! joined by a line.
+
+use eframe::egui::{Align, Button, Color32, ComboBox, Layout, ProgressBar, RichText, Ui};
+use egui_plot::{Line, MarkerShape, PlotPoint, PlotPoints, Points, Text};
+
+use super::axes::log_log;
+use super::{Commands, empty};
+use crate::accel::registry::{self, Family};
+use crate::geometry::tri::TestKind;
+use crate::lab::tradeoffs::front;
+use crate::viewer::command::Command;
+use crate::viewer::marks;
+use crate::viewer::state::State;
+use crate::viewer::theme::{self, Palette};
+pub use crate::viewer::tradeoffs::Plot;
+use crate::viewer::tradeoffs::{Goodness, Miss};
+
+/// What is chosen, and the button, in the row above.
+pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let trade = &state.tradeoffs;
+    if trade.plot == Plot::Intersection {
+        let combo = ComboBox::from_id_salt("miss").selected_text(trade.miss.name()).show_ui(ui, |ui| {
+            for miss in Miss::ALL {
+                if ui.selectable_label(miss == trade.miss, miss.name()).clicked() {
+                    commands.push(Command::Miss(miss));
+                }
+            }
+        });
+        combo.response.accessible_name("Error of intersections");
+    } else {
+        let combo = ComboBox::from_id_salt("goodness").width(48.0 * theme::GRID).selected_text(trade.goodness.name());
+        let combo = combo.show_ui(ui, |ui| {
+            for goodness in Goodness::ALL {
+                if ui.selectable_label(goodness == trade.goodness, goodness.name()).clicked() {
+                    commands.push(Command::Goodness(goodness));
+                }
+            }
+        });
+        combo.response.accessible_name("Quality of structures");
+    }
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        if let Some((job, _)) = &trade.running {
+            if ui.button("Cancel").on_hover_text("Stop measuring; what is drawn stays.").clicked() {
+                commands.push(Command::CancelTradeoffs);
+            }
+            let now = job.progress.snapshot();
+            let text = format!("Measuring: {}", now.phase);
+            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(40.0 * theme::GRID).text(text));
+            return;
+        }
+        let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+        let help = "Build every structure, and the BVH by every builder, with each triangle test, and time them on rays of this view: some seconds each. Rendering rests meanwhile.";
+        if ui.add_enabled(possible, Button::new("Measure")).on_hover_text(help).clicked() {
+            commands.push(Command::MeasureTradeoffs);
+        }
+    });
+}
+
+/// A point, with what it is called.
+struct Spot {
+    family: Family,
+    name: String,
+    marker: MarkerShape,
+    at: (f64, f64),
+}
+
+/// Where nothing is wrong there is no logarithm: drawn below the least that is.
+const NONE: f64 = 1.0;
+
+fn spots(state: &State) -> Vec<Spot> {
+    let trade = &state.tradeoffs;
+    let mut spots = Vec::new();
+    for row in &trade.rows {
+        let Some(family) = registry::find(&row.structure).map(|entry| entry.family) else { continue };
+        if trade.plot == Plot::Intersection {
+            for test in &row.tests {
+                let marker = match test.test {
+                    TestKind::Fast => MarkerShape::Cross,
+                    TestKind::Exact => MarkerShape::Diamond,
+                    _ => MarkerShape::Circle,
+                };
+                let (name, error) = (format!("{} {}", row.name, test.test.id()), trade.miss.of(test).max(NONE));
+                spots.push(Spot { family, name, marker, at: (test.ns, error) });
+            }
+        } else if let Some(goodness) = trade.goodness.of(row) {
+            let marker = marker_of(family);
+            spots.push(Spot { family, name: row.name.clone(), marker, at: (row.build_secs, goodness) });
+        }
+    }
+    spots.retain(|spot| spot.at.0 > 0.0 && spot.at.1 > 0.0 && spot.at.0.is_finite() && spot.at.1.is_finite());
+    spots
+}
+
+/// The family's mark, as near as plots have it.
+const fn marker_of(family: Family) -> MarkerShape {
+    match family {
+        Family::Bvh | Family::Brute => MarkerShape::Circle,
+        Family::KdTree => MarkerShape::Diamond,
+        Family::Grid => MarkerShape::Square,
+        Family::Octree => MarkerShape::Up,
+        Family::Bsp => MarkerShape::Cross,
+    }
+}
+
+/// Draws the plot.
+pub fn show(ui: &mut Ui, state: &State) {
+    let trade = &state.tradeoffs;
+    let spots = spots(state);
+    if spots.is_empty() {
+        empty(
+            ui,
+            if trade.running.is_some() { "The first structure is being measured." } else { "Not measured. Press Measure." },
+        );
+        return;
+    }
+    let palette = Palette::in_ui(ui);
+    let axes = match trade.plot {
+        Plot::Intersection => ["ns a hard ray", trade.miss.name()],
+        _ => ["seconds of the build", trade.goodness.name()],
+    };
+    let colors: Vec<Color32> = spots.iter().map(|spot| marks::color(ui, spot.family)).collect();
+    let logs = |spot: &Spot| [spot.at.0.log10(), spot.at.1.log10()];
+    let best = front(&spots.iter().map(|spot| spot.at).collect::<Vec<_>>());
+    if trade.plot == Plot::Intersection {
+        let help = "Circles are watertight, crosses fast, diamonds exact tests. Nothing wrong is drawn at 1.";
+        ui.label(RichText::new(help).small().color(palette.dim));
+    }
+    let id = if trade.plot == Plot::Intersection { "intersection" } else { "model" };
+    log_log(id, axes).show(ui, |plot| {
+        let mut joined: Vec<[f64; 2]> = spots.iter().zip(&best).filter(|(_, best)| **best).map(|(spot, _)| logs(spot)).collect();
+        joined.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        plot.line(Line::new("nobody is better at both", PlotPoints::from(joined)).color(palette.dim).width(1.0));
+        for ((spot, color), best) in spots.iter().zip(&colors).zip(&best) {
+            let points = Points::new(String::new(), vec![logs(spot)]).color(*color).shape(spot.marker);
+            plot.points(points.radius(theme::GRID + f32::from(u8::from(*best))).filled(*best));
+            let [x, y] = logs(spot);
+            let text = RichText::new(format!("  {}", spot.name)).small().color(if *best { palette.text } else { palette.dim });
+            plot.text(Text::new(String::new(), PlotPoint::new(x, y), text).anchor(eframe::egui::Align2::LEFT_CENTER));
+        }
+    });
+}

@@ -1,0 +1,162 @@
+//! What the Compare workspace knows of quality against its cost: rows as they are measured, and what of them is drawn.
+
+use std::sync::mpsc::Receiver;
+
+use super::workers::Trading;
+use crate::lab::RayKind;
+use crate::lab::tradeoffs::{TestRow, TradeoffRow};
+
+/// Everything of it.
+#[derive(Default)]
+pub struct Tradeoffs {
+    /// One for each variant that is through.
+    pub rows: Vec<TradeoffRow>,
+    /// The measurement, while it runs, and where it puts rows.
+    pub running: Option<(Trading, Receiver<TradeoffRow>)>,
+    /// Which plot is shown.
+    pub plot: Plot,
+    /// What of intersections is drawn.
+    pub miss: Miss,
+    /// What of structures is drawn.
+    pub goodness: Goodness,
+}
+
+/// The plots of the workspace.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Plot {
+    /// The picture's error against time.
+    #[default]
+    Image,
+    /// Errors of triangle tests against nanoseconds.
+    Intersection,
+    /// How good structures are against the time of their build.
+    Model,
+}
+
+impl Plot {
+    /// All, in the order of tabs.
+    pub const ALL: [Self; 3] = [Self::Image, Self::Intersection, Self::Model];
+
+    /// The name on the tab.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Image => "Image",
+            Self::Intersection => "Intersection",
+            Self::Model => "Model",
+        }
+    }
+
+    /// What it shows.
+    pub const fn help(self) -> &'static str {
+        match self {
+            Self::Image => "The error of the path traced picture against samples and seconds.",
+            Self::Intersection => "How triangle tests err on hard rays of this view, against the time of a ray.",
+            Self::Model => "How good each structure is, against the time of its build; and how far predictions are off.",
+        }
+    }
+}
+
+/// How a triangle test errs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Miss {
+    /// Wrong answers.
+    #[default]
+    Wrong,
+    /// Answers that rounding decided.
+    Rounded,
+    /// The error of t.
+    Ulps,
+}
+
+impl Miss {
+    /// All, in the order of menus.
+    pub const ALL: [Self; 3] = [Self::Wrong, Self::Rounded, Self::Ulps];
+
+    /// The name along the axis.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong rays in a million",
+            Self::Rounded => "rounded rays in a million",
+            Self::Ulps => "ulps of t, one in a thousand",
+        }
+    }
+
+    /// What it is of a row.
+    pub const fn of(self, row: &TestRow) -> f64 {
+        match self {
+            Self::Wrong => row.wrong_per_million,
+            Self::Rounded => row.rounded_per_million,
+            Self::Ulps => row.p999_ulps,
+        }
+    }
+}
+
+/// How good a structure is; less is better.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Goodness {
+    /// Measured nanoseconds of a diffuse ray.
+    #[default]
+    Diffuse,
+    /// Of a primary ray.
+    Primary,
+    /// Of a shadow ray.
+    Shadow,
+    /// Predicted nanoseconds of a random line.
+    Predicted,
+    /// The SAH cost.
+    Sah,
+    /// End-point overlap.
+    Epo,
+    /// By how much the prediction is off, of diffuse rays.
+    PredictionOfDiffuse,
+    /// The same of primary rays.
+    PredictionOfPrimary,
+    /// The same of shadow rays.
+    PredictionOfShadow,
+}
+
+impl Goodness {
+    /// All, in the order of menus.
+    pub const ALL: [Self; 9] = [
+        Self::Diffuse,
+        Self::Primary,
+        Self::Shadow,
+        Self::Predicted,
+        Self::Sah,
+        Self::Epo,
+        Self::PredictionOfDiffuse,
+        Self::PredictionOfPrimary,
+        Self::PredictionOfShadow,
+    ];
+
+    /// The name along the axis.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Diffuse => "ns a diffuse ray",
+            Self::Primary => "ns a primary ray",
+            Self::Shadow => "ns a shadow ray",
+            Self::Predicted => "predicted ns a line",
+            Self::Sah => "SAH cost",
+            Self::Epo => "end-point overlap",
+            Self::PredictionOfDiffuse => "prediction off, diffuse rays",
+            Self::PredictionOfPrimary => "prediction off, primary rays",
+            Self::PredictionOfShadow => "prediction off, shadow rays",
+        }
+    }
+
+    /// What it is of a row, if that is known.
+    pub fn of(self, row: &TradeoffRow) -> Option<f64> {
+        let off = |kind| row.prediction_error(kind).map(f64::abs);
+        match self {
+            Self::Diffuse => row.ns.get(&RayKind::Diffuse).copied(),
+            Self::Primary => row.ns.get(&RayKind::Primary).copied(),
+            Self::Shadow => row.ns.get(&RayKind::Shadow).copied(),
+            Self::Predicted => row.predicted_ns,
+            Self::Sah => Some(row.sah),
+            Self::Epo => row.epo,
+            Self::PredictionOfDiffuse => off(RayKind::Diffuse),
+            Self::PredictionOfPrimary => off(RayKind::Primary),
+            Self::PredictionOfShadow => off(RayKind::Shadow),
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The Compare workspace: the picture's error as it falls, and quality against its cost.
+
+use std::time::{Duration, Instant};
+
+use boxwood::accel::registry;
+use boxwood::render::Mode;
+use boxwood::viewer::ViewerOptions;
+use boxwood::viewer::errors::Known;
+use boxwood::viewer::settings::Workspace;
+use boxwood::viewer::tradeoffs::Plot;
+use eframe::egui::{Key, Modifiers, Role};
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::window::{Setup, Window};
+
+fn open(model: &str, max_samples: u32) -> Window {
+    let options = ViewerOptions { model: Some(model.to_owned()), samples: Some(max_samples), ..ViewerOptions::default() };
+    let mut w = Window::new(Setup { alone: true, options, ..Setup::default() }).settled();
+    w.key(Modifiers::NONE, Key::F4);
+    assert_eq!(w.state().settings.workspace, Workspace::Compare);
+    w
+}
+
+#[test]
+fn errors_fall_with_samples_and_are_measured_against_a_reference() {
+    let mut w = open("builtin:cornell-box", 4);
+    assert!(w.says("Errors are those of the path traced picture."));
+    w.button("Path trace");
+    assert_eq!(w.state().settings.mode, Mode::Path);
+    w.until("a curve", |s| s.errors.curves.first().is_some_and(|live| live.shots.len() == 3));
+    w.button(registry::find("wide").expect("registered").name);
+    w.until("another", |s| s.errors.curves.get(1).is_some_and(|live| live.shots.len() == 3));
+    let samples: Vec<u32> = w.state().errors.curves[0].shots.iter().map(|shot| shot.samples).collect();
+    assert_eq!(samples, [1, 2, 4]);
+    // Without a reference, an estimate from two samples on.
+    let known = |w: &Window, point| w.state().errors.known(0, point);
+    assert!(known(&w, 0).is_none() && matches!(known(&w, 2), Some(Known::Noise(noise)) if noise > 0.0));
+
+    let (spp, _) = w.state().errors.wanted_reference().expect("there are samples");
+    assert_eq!(spp, 64);
+    let label = w.texts().into_iter().find(|t| t.text.starts_with("Make reference")).expect("the button").text;
+    w.button(&label);
+    assert!(w.state().errors.making.is_some() && w.state().is_measuring());
+    w.button("Cancel");
+    assert!(w.state().errors.making.is_none());
+    w.settle();
+    let label = w.texts().into_iter().find(|t| t.text.starts_with("Make reference")).expect("the button").text;
+    w.button(&label);
+    w.until("the reference", |s| s.errors.reference.is_some());
+    w.until("errors", |s| s.errors.curves.iter().all(|live| live.errors.iter().all(Option::is_some)));
+    let rmse = |w: &Window, curve, point| match w.state().errors.known(curve, point) {
+        Some(Known::Error { rmse, .. }) => rmse,
+        other => panic!("{other:?}"),
+    };
+    assert!((0..2).all(|point| rmse(&w, 0, point) > rmse(&w, 0, point + 1)));
+    // Both structures are of the same samples: the same errors to the bit.
+    assert!((0..3).all(|point| rmse(&w, 0, point) == rmse(&w, 1, point)));
+
+    w.harness.get_by_role_and_label(Role::CheckBox, "Show as table").click();
+    w.step();
+    let before = w.state().picture.as_ref().expect("a picture").rgba.clone();
+    w.harness.get_all_by_role_and_label(Role::Button, "BVH").last().expect("a row").click();
+    w.step();
+    w.until("its picture", |s| s.is_held());
+    assert!(w.state().on_screen().is_some_and(|shown| shown.rgba != before));
+    w.step();
+    let describes = |w: &Window, what: &str| {
+        w.harness.get_by_role(Role::Canvas).accesskit_node().description().is_some_and(|d| d.contains(what))
+    };
+    assert!(describes(&w, "picture of 4 spp"), "{:?}", w.harness.get_by_role(Role::Canvas).accesskit_node().description());
+    w.harness.get_by_role_and_label(Role::CheckBox, "Difference").click();
+    w.step();
+    w.until("the difference", |s| s.is_held());
+    w.step();
+    assert!(describes(&w, "difference from the reference of 4 spp") && w.says("Brightness less the reference's"));
+    w.button("Back to the present picture");
+    assert!(!w.state().is_held());
+    // Another view begins anew.
+    w.key(Modifiers::NONE, Key::P);
+    w.until("a new curve", |s| s.errors.reference.is_none() && s.errors.curves.len() == 1);
+}
+
+#[test]
+fn quality_is_measured_structure_by_structure_and_can_be_cancelled() {
+    let mut w = open("builtin:lecture", 2);
+    w.button("Model");
+    assert_eq!(w.state().tradeoffs.plot, Plot::Model);
+    assert!(w.says("Not measured. Press Measure."));
+    w.button("Measure");
+    w.until("two rows", |s| s.tradeoffs.rows.len() >= 2);
+    w.step();
+    let stop = Instant::now();
+    w.button("Cancel");
+    assert!(w.state().tradeoffs.running.is_none() && stop.elapsed() < Duration::from_millis(100), "{:?}", stop.elapsed());
+    let rows = &w.state().tradeoffs.rows;
+    assert_eq!(rows[0].structure, registry::ALL[0].id);
+    for row in rows {
+        assert!(row.error.is_none() && row.build_secs > 0.0 && row.ns.values().all(|ns| *ns > 0.0), "{row:?}");
+        assert!(row.tests.len() == 3 && row.tests.iter().all(|test| test.wrong_per_million == 0.0 && test.rays > 0), "{row:?}");
+    }
+    // What is drawn has a place for what is there, and the other plot has the same rows.
+    w.button("Intersection");
+    assert_eq!(w.state().tradeoffs.plot, Plot::Intersection);
+    assert!(!w.says("Not measured. Press Measure."));
+}
