@@ -88,7 +88,7 @@ pub struct Outcome {
     adaptive: bool,
     metrics: Vec<[&'static str; 2]>,
     #[serde(flatten)]
-    convergence: Convergence,
+    pub convergence: Convergence,
     /// Structures that are missing, and why.
     missing: Vec<[String; 2]>,
 }
@@ -115,20 +115,31 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         return Err(Failure::Input("none of the structures could be built".to_owned()));
     };
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
-    let scene_facts = model.facts();
     let job = Job {
         transport: args.transport.transport(),
         ..Job::new(Arc::clone(&model.scene), Arc::clone(&first.accel), camera, Mode::Path, looks)
     };
+    let outcome = measure(&job, &runners, &args.options(), (&folder, model.facts(), missing), &cx)?;
+    write(&outcome, &folder, &cx.cancel)?;
+    if args.json { print_json(&outcome) } else { print(&text(args, &outcome)) }
+}
+
+/// Renders, makes the reference or takes the folder's, and measures.
+pub fn measure(
+    job: &Job,
+    runners: &[Runner],
+    options: &ConvergeOptions,
+    (folder, scene, missing): (&Folder, SceneFacts, Vec<[String; 2]>),
+    cx: &Context,
+) -> Result<Outcome, Failure> {
     let progress = Progress::new();
-    let converge_cx =
-        ConvergeCx { pool: cx.pool.clone(), cancel: cx.cancel.clone(), progress: progress.clone(), budget: cx.budget.clone() };
-    let options = args.options();
-    let rendered = bar::watch("converge", &progress, || converge::render(&job, &runners, &options, &converge_cx))?;
-    let reference = reference(&job, &rendered, &options, &folder, &converge_cx)?;
-    let outcome = Outcome {
+    let (pool, cancel, budget) = (cx.pool.clone(), cx.cancel.clone(), cx.budget.clone());
+    let with = ConvergeCx { pool, cancel, progress: progress.clone(), budget };
+    let rendered = bar::watch("converge", &progress, || converge::render(job, runners, options, &with))?;
+    let reference = reference(job, &rendered, options, folder, &with)?;
+    Ok(Outcome {
         version: 1,
-        scene: scene_facts,
+        scene,
         machine: cx.machine(),
         size: options.size,
         seed: options.seed,
@@ -139,9 +150,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         metrics: Metric::ALL.map(|metric| [metric.label(), metric.formula()]).into(),
         convergence: converge::evaluate(&rendered, &reference),
         missing,
-    };
-    write(&outcome, &folder, &cx.cancel)?;
-    if args.json { print_json(&outcome) } else { print(&text(args, &outcome)) }
+    })
 }
 
 impl Args {
@@ -168,10 +177,11 @@ impl From<ConvergeError> for Failure {
 }
 
 /// Where everything goes.
-struct Folder(PathBuf);
+pub struct Folder(PathBuf);
 
 impl Folder {
-    fn at(path: &Path) -> Result<Self, Failure> {
+    /// Makes it if it is not there.
+    pub fn at(path: &Path) -> Result<Self, Failure> {
         fs::create_dir_all(path).map_err(|error| Failure::of_output(path, &error))?;
         Ok(Self(path.to_owned()))
     }
@@ -180,7 +190,8 @@ impl Folder {
         OutFile::at(&self.0.join(name))
     }
 
-    fn write(&self, name: &str, bytes: &[u8], cancel: &Cancel) -> Result<(), Failure> {
+    /// Writes a file in it.
+    pub fn write(&self, name: &str, bytes: &[u8], cancel: &Cancel) -> Result<(), Failure> {
         self.file(name)?.write(cancel, |out| out.write_all(bytes))
     }
 }
@@ -221,7 +232,8 @@ fn write(outcome: &Outcome, folder: &Folder, cancel: &Cancel) -> Result<(), Fail
     Ok(())
 }
 
-fn csv(curves: &[Curve]) -> String {
+/// A line a point.
+pub fn csv(curves: &[Curve]) -> String {
     let mut out = "structure,sampler,build_secs,spp,secs,secs_min,secs_max,rmse,relmse,mae,smape,flip,hollow\n".to_owned();
     for curve in curves {
         for p in &curve.points {
@@ -248,7 +260,7 @@ fn csv(curves: &[Curve]) -> String {
 }
 
 /// Error against samples, and against seconds.
-fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
+pub fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
     let curves = &outcome.convergence.curves;
     let several = curves.iter().any(|c| c.sampler != curves[0].sampler);
     let plotted = |curve: &Curve, of_secs: bool| {
@@ -267,6 +279,7 @@ fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
         axes: [x, "RMSE of linear light"],
         curves: curves.iter().map(|curve| plotted(curve, of_secs)).collect(),
         guide: Some(("slope -1/2", |x| x.powf(-0.5))),
+        labelled: false,
     };
     [
         ("error-samples", panel("error against samples", "samples a pixel", false)),
@@ -304,6 +317,7 @@ fn text(args: &Args, outcome: &Outcome) -> String {
         "relMSE",
         "MAE",
         "SMAPE",
+        "FLIP",
         "slope",
         "95 %",
         "1/(MSE s)",
@@ -313,11 +327,13 @@ fn text(args: &Args, outcome: &Outcome) -> String {
         let slope = curve.slope.map_or([MISSING.to_owned(), MISSING.to_owned()], |slope| {
             [format!("{:.3}", slope.value), format!("{:.3} to {:.3}", slope.low, slope.high)]
         });
+        let flip = or_missing(last.errors.flip, |flip| format!("{flip:.3}"));
         let errors = [last.errors.rmse, last.errors.relmse, last.errors.mae, last.errors.smape];
         let secs = [last.secs, last.secs_min, last.secs_max].map(duration);
         let head = [curve.structure.clone(), curve.sampler.id().to_owned(), duration(curve.build_secs), last.spp.to_string()];
         let efficiency = curve.efficiency.map_or(MISSING.to_owned(), number);
-        let cells = head.into_iter().chain(secs).chain(errors.map(|e| format!("{e:.3e}"))).chain(slope).chain([efficiency]);
+        let cells =
+            head.into_iter().chain(secs).chain(errors.map(|e| format!("{e:.3e}"))).chain([flip]).chain(slope).chain([efficiency]);
         table.row(cells.collect());
     }
     out += &format!("\n{}", table.render());

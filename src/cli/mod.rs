@@ -24,6 +24,7 @@ mod plot;
 mod quality;
 mod rays;
 mod render;
+mod report;
 mod scaling;
 mod scenes;
 mod stability;
@@ -76,7 +77,9 @@ enum Command {
     Volumes(volumes::Args),
     /// Say what a model uses and what is left out for it, and what that saves.
     Needs(needs::Args),
-    /// Render a picture to a PNG file.
+    /// Measure everything on a model, and put it on one page.
+    Report(report::Args),
+    /// Render a picture to a PNG or EXR file.
     Render(render::Args),
     /// Write the rays of a view to a NumPy file.
     Rays(rays::Args),
@@ -111,6 +114,7 @@ fn dispatch(cli: Cli) -> Result<(), Failure> {
         Command::Check(args) => check::run(&args, cancel),
         Command::Volumes(args) => volumes::run(&args, cancel),
         Command::Needs(args) => needs::run(&args, cancel),
+        Command::Report(args) => report::run(&args, cancel),
         Command::Render(args) => render::run(&args, cancel),
         Command::Rays(args) => rays::run(&args, cancel),
         Command::Trace(args) => trace::run(&args, cancel),

@@ -18,6 +18,8 @@ pub struct Panel {
     pub curves: Vec<Curve>,
     /// A curve to compare with: its name and a function that is moved through the least point of all.
     pub guide: Option<Guide>,
+    /// Whether curves are named at their first point, instead of in a list.
+    pub labelled: bool,
 }
 
 /// Its name, and a function.
@@ -158,6 +160,13 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
             EmptyElement::at(dot.at) + Circle::new((0, 0), 4, inside) + Circle::new((0, 0), 4, color.stroke_width(2))
         };
         chart.draw_series(dots.iter().map(dot))?;
+        if let (true, Some(first)) = (panel.labelled, dots.first()) {
+            let place = EmptyElement::at(first.at) + Text::new(curve.name.clone(), (7, -6), ("sans-serif", TEXT - 3));
+            chart.draw_series(std::iter::once(place))?;
+        }
+    }
+    if panel.labelled {
+        return Ok(());
     }
     // Where there are no curves.
     let falls = panel.guide.is_some_and(|(_, law)| law(4.0) < law(2.0));
@@ -222,7 +231,8 @@ mod tests {
     fn every_curve_is_drawn_and_named() {
         let curve = |id: &str, power: f64| Curve::of(id, [1e3, 1e4, 1e5].map(|n: f64| (n, 1e-6 * n.powf(power))));
         let guide: (_, fn(f64) -> f64) = ("N log N", |n| n * n.ln());
-        let mut panel = Panel { title: "Builds".to_owned(), axes: ["triangles", "s"], curves: vec![], guide: Some(guide) };
+        let mut panel =
+            Panel { title: "Builds".to_owned(), axes: ["triangles", "s"], curves: vec![], guide: Some(guide), labelled: false };
         let empty = log_log(&[panel.clone()]).expect("drawn");
         panel.curves = vec![curve("bvh", 1.1), curve("kdtree", 1.2)];
         panel.curves[1].points.push(Dot { at: (1e6, f64::NAN), span: None, hollow: false });

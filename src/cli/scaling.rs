@@ -183,12 +183,14 @@ fn panels(outcome: &Outcome) -> [Panel; 2] {
             axes: ["triangles", "seconds of a build"],
             curves: curves(|p| p.build_secs),
             guide: Some(("N log N", |n| n * n.ln())),
+            labelled: false,
         },
         Panel {
             title: format!("{}: {} rays, {threads} threads", outcome.model, outcome.rays.id()),
             axes: ["triangles", "nanoseconds of a ray"],
             curves: curves(|p| p.ray_secs * 1e9),
             guide: Some(("log N", f64::ln)),
+            labelled: false,
         },
     ]
 }

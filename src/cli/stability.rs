@@ -197,6 +197,7 @@ fn panel(outcome: &Outcome) -> Panel {
         axes: ["nanoseconds of a ray, mean over cases", "ulps that one clear hit in a thousand exceeds"],
         curves: ids.iter().map(curve).collect(),
         guide: None,
+        labelled: false,
     }
 }
 

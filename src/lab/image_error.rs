@@ -81,6 +81,33 @@ impl ImageErrors {
     }
 }
 
+impl ImageErrors {
+    /// The same with [`Metric::Flip`], of pictures of that size; where this program has it.
+    #[must_use]
+    pub fn with_flip(self, picture: &[[f32; 3]], reference: &[[f32; 3]], size: [u32; 2]) -> Self {
+        Self { flip: flip(picture, reference, size), ..self }
+    }
+}
+
+#[cfg(feature = "flip")]
+fn flip(picture: &[[f32; 3]], reference: &[[f32; 3]], [width, height]: [u32; 2]) -> Option<f64> {
+    let pixels = width as usize * height as usize;
+    if pixels == 0 || picture.len() != pixels || reference.len() != pixels {
+        return None;
+    }
+    let shown = |light: &[[f32; 3]]| {
+        let bytes: Vec<u8> = light.as_flattened().iter().map(|x| (crate::render::encode(*x) * 255.0 + 0.5) as u8).collect();
+        nv_flip::FlipImageRgb8::with_data(width, height, &bytes)
+    };
+    let map = nv_flip::flip(shown(reference), shown(picture), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    Some(f64::from(nv_flip::FlipPool::from_image(&map).mean()))
+}
+
+#[cfg(not(feature = "flip"))]
+fn flip(_: &[[f32; 3]], _: &[[f32; 3]], _: [u32; 2]) -> Option<f64> {
+    None
+}
+
 /// The root mean squared difference of two pictures.
 pub fn rms_difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
     ImageErrors::of(a, b).rmse
@@ -99,6 +126,13 @@ mod tests {
         is(errors.relmse, (0.25 / 0.26 + 0.04 / 0.05 + 1.0 / 1.01) / 6.0);
         is(errors.mae, 1.7 / 6.0);
         is(errors.smape, (2.0 * 0.5 / 1.5 + 2.0 + 2.0 / 3.0) / 6.0);
+        let both = errors.with_flip(&v, &r, [2, 1]);
+        assert_eq!((both.flip.is_some(), both.rmse), (cfg!(feature = "flip"), errors.rmse));
+        assert_eq!(errors.with_flip(&v, &r, [7, 1]).flip, None, "a size that is not theirs");
+        assert!(
+            errors.with_flip(&r, &r, [2, 1]).flip.unwrap_or(0.0) == 0.0
+                && both.flip.is_none_or(|flip| flip > 0.05 && flip <= 1.0)
+        );
         assert_eq!(ImageErrors::of(&r, &r), ImageErrors { rmse: 0.0, relmse: 0.0, mae: 0.0, smape: 0.0, flip: None });
     }
 }

@@ -24,7 +24,7 @@ use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::render::Job;
 use crate::scene::Geometry;
-use crate::task::{Cancel, Cancelled, Progress};
+use crate::task::{Cancel, Cancelled, Pool, Progress};
 
 /// A structure, built in one of its ways.
 #[derive(Clone, Debug)]
@@ -38,6 +38,11 @@ pub struct Variant {
 }
 
 impl Variant {
+    /// Whether it is a structure as it comes.
+    pub fn is_plain(&self) -> bool {
+        self.name == self.entry.id
+    }
+
     /// Structures as they come, and the BVH by each of its builders.
     pub fn all_of(entries: &[(&'static Entry, ParamValues)]) -> Vec<Self> {
         let mut variants = Vec::new();
@@ -72,7 +77,7 @@ pub struct TradeoffRow {
     pub epo: Option<f64>,
     /// Nanoseconds of a random line that nothing cuts short, as the areas of the cells and the fitted costs predict.
     pub predicted_ns: Option<f64>,
-    /// Nanoseconds of a ray, measured, by kind.
+    /// Nanoseconds of a thread for a ray, measured, by kind.
     pub ns: BTreeMap<RayKind, f64>,
     /// By triangle test, on rays that are hard for them.
     pub tests: Vec<TestRow>,
@@ -86,7 +91,7 @@ pub struct TradeoffRow {
 pub struct TestRow {
     /// The test.
     pub test: TestKind,
-    /// Nanoseconds of a hard ray.
+    /// Nanoseconds of a thread for a hard ray.
     pub ns: f64,
     /// Hard rays that were judged.
     pub rays: usize,
@@ -187,7 +192,7 @@ impl Tradeoffs {
         let contestant = [Contestant { id: row.name.clone(), accel: Arc::clone(accel) }];
         for set in &self.sets {
             let timing = measure(&contestant, set, &TIMES, pool, cancel, &quiet)?;
-            row.ns.extend(timing.first().map(|timing| (set.kind, ns_per_ray(timing))));
+            row.ns.extend(timing.first().map(|timing| (set.kind, ns_per_ray(timing, pool))));
         }
         let sets: Vec<&RaySet> = self.sets.iter().collect();
         let costs = fit_costs(&contestant, &sets, &FitOptions { rounds: 3, cap_secs: 0.5 }, pool, cancel, &quiet)?;
@@ -208,7 +213,7 @@ impl Tradeoffs {
             let per_million = |n: usize| 1e6 * n as f64 / judged.rays.max(1) as f64;
             row.tests.push(TestRow {
                 test: *test,
-                ns: ns_per_ray(&timing),
+                ns: ns_per_ray(&timing, pool),
                 rays: judged.rays,
                 wrong_per_million: per_million(judged.wrong),
                 rounded_per_million: per_million(judged.rounded),
@@ -234,8 +239,9 @@ impl Tradeoffs {
 const TIMES: MeasureOptions =
     MeasureOptions { min_rounds: 3, min_secs: 0.2, cap_secs: 1.5, fairness: super::measure::Fairness::LikeForLike };
 
-fn ns_per_ray(timing: &super::Timing) -> f64 {
-    timing.secs_median * 1e9 / timing.rays.max(1) as f64
+/// Of one thread: what all have taken together.
+fn ns_per_ray(timing: &super::Timing, pool: &Pool) -> f64 {
+    timing.secs_median * 1e9 * pool.threads() as f64 / timing.rays.max(1) as f64
 }
 
 /// The distance from a number to the next.

@@ -276,8 +276,13 @@ impl<N: Fn()> Worker<N> {
                 self.pass(task, &mut film, step, cancel)?;
                 step /= 2;
             }
-            // Amounts are no colours: how sure they are is not asked.
-            let film = if task.request.job.mode.is_scalar() { Film::new } else { Film::converging };
+            // Amounts are no colours: how sure they are is not asked. Where errors are looked at, no pixel rests, which would
+            // bias them.
+            let film = match (task.request.job.mode.is_scalar(), &task.request.keep) {
+                (true, _) => Film::new,
+                (false, None) => Film::converging,
+                (false, Some(_)) => Film::estimating,
+            };
             task.film = Some(film(task.request.width, task.request.height));
         }
         let Some(mut film) = task.film.take() else { return Ok(()) };

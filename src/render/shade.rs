@@ -45,8 +45,12 @@ pub(super) struct Facing {
 }
 
 /// The normal towards the viewer at a point that was hit, in a scene of which nothing is known.
-pub(super) fn facing_normal(job: &Job, ray: &Ray, hit: &Hit, point: &Point) -> Facing {
-    let normal = bent_by_vertices::<true, true>(job, ray, hit, point.normal);
+pub(super) fn normal_at(job: &Job, ray: &Ray, hit: &Hit, point: &Point) -> Vec3 {
+    bent_by_vertices::<true, true>(job, ray, hit, point.normal)
+}
+
+/// Which way the surface itself faces where that normal is.
+pub(super) fn facing(job: &Job, hit: &Hit, normal: Vec3) -> Facing {
     let instance = &job.scene.instances[hit.instance as usize];
     let mesh = &job.scene.meshes[instance.mesh];
     let own = if mesh.normals.is_empty() {

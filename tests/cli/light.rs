@@ -101,3 +101,36 @@ fn an_image_of_the_surroundings_lights_the_scene() {
     assert!(said.contains("sky.png") && said.contains(".hdr"), "{said}");
     assert!(bad(&[&args[..], &["--sun", "high"]].concat(), 2).contains("ELEVATION,AZIMUTH"));
 }
+
+#[test]
+fn a_report_is_one_page_of_everything() {
+    let folder = Folder::new();
+    let (model, out) = (folder.model(), folder.at("report"));
+    good(&["report", &model, "-o", &out, "--quick", "--structures", "bvh,kdtree"]);
+    let page = fs::read_to_string(folder.at("report/index.html")).expect("there");
+    for section in [
+        "Pictures",
+        "Used and left out",
+        "Structures",
+        "Timings",
+        "Predicted and measured",
+        "Image error",
+        "Intersection error",
+        "Model error",
+        "Stability",
+        "Machine, seeds, commands",
+    ] {
+        assert!(page.contains(&format!(">{section}</h2>")), "{section}");
+    }
+    assert_eq!((page.matches("<svg").count(), page.matches("data:image/png").count()), (6, 3));
+    // Nothing is fetched: the only address is the name of what SVG is.
+    assert_eq!(page.matches("http").count(), page.matches("http://www.w3.org/2000/svg").count());
+    assert!(page.contains("Würfel.ply") && !page.contains(">NaN"));
+    let report: Value = serde_json::from_slice(&fs::read(folder.at("report/report.json")).expect("there")).expect("JSON");
+    assert_eq!((&report["version"], &report["quick"]), (&1.into(), &true.into()));
+    assert_eq!(report["structures"].as_array().map(Vec::len), Some(2));
+    assert_eq!(report["tradeoffs"].as_array().map(Vec::len), Some(2), "no builders where it is to be quick");
+    assert_eq!(report["check"]["structures"][0]["wrong"], 0);
+    assert!(report["commands"][0].as_str().is_some_and(|line| line.contains("report") && line.contains("--quick")));
+    assert_eq!(fs::read_to_string(folder.at("report/structures.csv")).expect("there").lines().count(), 3);
+}

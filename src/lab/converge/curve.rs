@@ -76,7 +76,8 @@ impl Curve {
     /// Measures a lane's pictures.
     pub fn of(lane: &Lane, reference: &Reference) -> Self {
         let point = |shot: &super::run::Shot| {
-            let errors = ImageErrors::of(&shot.pixels, &reference.pixels);
+            let (pixels, size) = (&shot.pixels, reference.facts.size);
+            let errors = ImageErrors::of(pixels, &reference.pixels).with_flip(pixels, &reference.pixels, size);
             let secs = median(&shot.secs);
             Point {
                 spp: shot.spp,

@@ -75,7 +75,8 @@ impl Bsdf {
         let sum = all.iter().sum::<f32>();
         let chances = if sum > 0.0 { all.map(|x| x / sum) } else { [0.0; 3] };
         let out = 1.0 - if f0 > 0.0 { Albedo::mean(roughness).share(f0) } else { 0.0 };
-        let gains = [base.x, base.y, base.z, f0].map(|f0| albedo.gain(f0));
+        let metals = if metallic > 0.0 { base.to_array().map(|f0| albedo.gain(f0)) } else { [1.0; 3] };
+        let gains = [metals[0], metals[1], metals[2], albedo.gain(f0)];
         let facets = Roughness::new(roughness);
         Some(Seen { of: *self, to, facets, albedo, gains, body, out: out.max(1e-4) * PI, chances })
     }

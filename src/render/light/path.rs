@@ -9,7 +9,7 @@ use crate::accel::{self, Hit};
 use crate::geometry::Ray;
 use crate::geometry::num::{UNIT_ROUNDOFF, narrow};
 use crate::render::sampler::Sampler;
-use crate::render::shade::{Facing, facing_normal};
+use crate::render::shade::{Facing, facing, normal_at};
 use crate::render::spawn::Point;
 use crate::render::work::{Watch, Work};
 use crate::render::{Job, Transport};
@@ -188,10 +188,10 @@ impl Surface {
         let mesh = job.scene.instances[hit.instance as usize].mesh;
         let finish = Finish::new(&job.scene, mesh, job.looks.textures());
         let Finished { base, metallic, roughness, transmission, ior, emission, bend } = finish.at(hit.primitive, hit.u, hit.v);
-        let facing = facing_normal(job, ray, hit, &point);
+        let normal = normal_at(job, ray, hit, &point);
         let normal = match bend.zip(finish.uvs(hit.primitive)) {
-            Some((bend, uvs)) => bent(facing, bend, &geometry.corners_of(hit.instance, hit.primitive), &uvs),
-            None => facing.normal,
+            Some((bend, uvs)) => bent(facing(job, hit, normal), bend, &geometry.corners_of(hit.instance, hit.primitive), &uvs),
+            None => normal,
         };
         let (axes, dir) = (axes(normal), ray.dir.normalize_or_zero());
         let to = to_local(&axes, -dir);

@@ -6,28 +6,38 @@ use rayon::prelude::*;
 use super::sources::brightness;
 use crate::geometry::num::narrow;
 use crate::scene::texture::Textures;
-use crate::scene::{Geometry, Material, Scene};
+use crate::scene::{Finish, Geometry, Material, Scene};
 use crate::task::{Cancel, Cancelled};
 
 /// The triangles of a scene that shine. Lengths and areas are those of the scaled space.
 #[derive(Debug, Default)]
 pub struct Shining {
-    triangles: Vec<(u32, u32)>,
+    triangles: Vec<Emitter>,
     /// The power of all up to each, itself included.
     powers: Vec<f64>,
     /// How bright each material of the scene is on average: what its triangles are chosen by.
     brightness: Vec<f32>,
 }
 
+/// A triangle that shines: many points of it are asked for, so that all of it is at hand.
+#[derive(Clone, Copy, Debug)]
+struct Emitter {
+    instance: u32,
+    primitive: u32,
+    corner: Vec3,
+    edges: [Vec3; 2],
+    normal: Vec3,
+    /// What it sends out, where no image says so.
+    radiance: Option<Vec3>,
+    /// How densely its points are chosen but for the power of all.
+    brightness: f32,
+}
+
 /// A point that light comes from.
 #[derive(Clone, Copy, Debug)]
 pub struct Chosen {
-    /// Which triangle it is of.
-    pub instance: u32,
-    /// Of that instance.
-    pub primitive: u32,
-    /// The weights of the triangle's second and third corner.
-    pub uv: Vec2,
+    /// What it sends out.
+    pub radiance: Vec3,
     /// In the scaled space.
     pub at: Vec3,
     /// Of the triangle, of unit length.
@@ -55,25 +65,31 @@ impl Shining {
         let brightness = scene.materials.iter().map(|material| mean_brightness(material, textures)).collect();
         let mut shining = Self { brightness, ..Self::default() };
         for (number, instance) in (0u32..).zip(&scene.instances) {
-            let bright = shining.brightness_of(scene.meshes[instance.mesh].material);
-            if bright <= 0.0 {
+            let number_of_material = scene.meshes[instance.mesh].material;
+            let bright = shining.brightness_of(number_of_material);
+            let Some(material) = number_of_material.and_then(|m| scene.materials.get(m)).filter(|_| bright > 0.0) else {
                 continue;
-            }
+            };
             let count = geometry.count_of(number);
-            let area = |primitive: u32| {
+            let radiance = material.emission_texture.is_none().then(|| Vec3::from(material.emission));
+            let emitter = |primitive: u32| {
                 let [a, b, c] = geometry.corners_of(number, primitive);
-                let area = 0.5 * (b - a).as_dvec3().cross((c - a).as_dvec3()).length();
-                if area.is_finite() { area } else { 0.0 }
+                let cross = (b - a).as_dvec3().cross((c - a).as_dvec3());
+                let normal = cross.try_normalize()?.as_vec3();
+                let (corner, edges) = (a, [b - a, c - a]);
+                let emitter = Emitter { instance: number, primitive, corner, edges, normal, radiance, brightness: bright };
+                Some((emitter, 0.5 * cross.length())).filter(|(_, area)| area.is_finite() && *area > 0.0)
             };
             let chunk = |from: usize| {
                 cancel.check()?;
-                Ok((from..count.min(from + CHUNK)).map(|i| area(crate::geometry::num::index(i))).collect())
+                let all = (from..count.min(from + CHUNK)).map(|i| emitter(crate::geometry::num::index(i)));
+                Ok(all.flatten().collect())
             };
             let starts: Vec<usize> = (0..count).step_by(CHUNK).collect();
-            let areas: Result<Vec<Vec<f64>>, Cancelled> = starts.into_par_iter().map(chunk).collect();
-            for (primitive, area) in (0u32..).zip(areas?.concat()).filter(|(_, area)| *area > 0.0) {
+            let emitters: Result<Vec<Vec<(Emitter, f64)>>, Cancelled> = starts.into_par_iter().map(chunk).collect();
+            for (emitter, area) in emitters?.concat() {
                 shining.powers.push(shining.total() + area * f64::from(bright));
-                shining.triangles.push((number, primitive));
+                shining.triangles.push(emitter);
             }
         }
         Ok(shining)
@@ -89,17 +105,20 @@ impl Shining {
     }
 
     /// A point, by power; `None` if no triangle shines.
-    pub fn choose(&self, scene: &Scene, geometry: &Geometry, which: f32, u: Vec2) -> Option<Chosen> {
-        let at = self.powers.partition_point(|power| *power <= f64::from(which) * self.total());
-        let (instance, primitive) = *self.triangles.get(at.min(self.triangles.len().checked_sub(1)?))?;
-        let [a, b, c] = geometry.corners_of(instance, primitive);
+    pub fn choose(&self, scene: &Scene, textures: &Textures, which: f32, u: Vec2) -> Option<Chosen> {
+        let total = self.total();
+        let at = self.powers.partition_point(|power| *power <= f64::from(which) * total);
+        let emitter = self.triangles.get(at.min(self.triangles.len().checked_sub(1)?))?;
         // Evenly over a triangle (Shirley and Chiu 1997; Osada et al. 2002).
         let root = u.x.sqrt();
-        let uv = Vec2::new(root * (1.0 - u.y), root * u.y);
-        let at = a + (b - a) * uv.x + (c - a) * uv.y;
-        let normal = (b - a).as_dvec3().cross((c - a).as_dvec3()).try_normalize()?.as_vec3();
-        let material = scene.meshes[scene.instances[instance as usize].mesh].material;
-        Some(Chosen { instance, primitive, uv, at, normal, density: self.density(material) })
+        let (v, w) = (root * (1.0 - u.y), root * u.y);
+        let at = emitter.corner + emitter.edges[0] * v + emitter.edges[1] * w;
+        let radiance = emitter.radiance.unwrap_or_else(|| {
+            let mesh = scene.instances[emitter.instance as usize].mesh;
+            Finish::new(scene, mesh, textures).emission(emitter.primitive, v, w).into()
+        });
+        let density = narrow(f64::from(emitter.brightness) / total);
+        Some(Chosen { radiance, at, normal: emitter.normal, density })
     }
 
     /// How densely [`Self::choose`] chooses points of triangles of a material, over area: of brighter ones as much more as

@@ -10,7 +10,7 @@ use super::shining::Shining;
 use super::sky::{Sky, Sun};
 use crate::geometry::num::narrow;
 use crate::scene::texture::Textures;
-use crate::scene::{Environment, Finish, Geometry, Scene};
+use crate::scene::{Environment, Geometry, Scene};
 use crate::task::{Cancel, Cancelled};
 
 /// What is around a scene.
@@ -182,15 +182,13 @@ impl Sources {
         which: f32,
         u: Vec2,
     ) -> Option<Incoming> {
-        let chosen = self.shining.choose(scene, geometry, which, u)?;
+        let chosen = self.shining.choose(scene, textures, which, u)?;
         let away = chosen.at - point;
         let distance = away.length();
         let dir = away.try_normalize()?;
         let cosine = chosen.normal.dot(dir).abs();
         let density = self.chances[0] * chosen.density * distance * distance / cosine;
-        let mesh = scene.instances[chosen.instance as usize].mesh;
-        let radiance = Finish::new(scene, mesh, textures).emission(chosen.primitive, chosen.uv.x, chosen.uv.y);
-        let (from, light) = (Some(geometry.space().world_point(chosen.at)), Vec3::from(radiance) / density);
+        let (from, light) = (Some(geometry.space().world_point(chosen.at)), chosen.radiance / density);
         (density > 0.0 && density.is_finite()).then_some(Incoming { dir, from, light, density })
     }
 

@@ -17,6 +17,8 @@ use crate::viewer::theme::{self, Palette};
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    // The panel is as high as it was made, whatever is in it: the view above must not change its size with it.
+    ui.take_available_space();
     let plot = state.tradeoffs.plot;
     ui.horizontal(|ui| {
         for other in tradeoffs::Plot::ALL {
@@ -102,7 +104,7 @@ fn places(errors: &Errors, of_secs: bool) -> Vec<Place> {
 }
 
 fn plots(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    let size = vec2((ui.available_width() - theme::GUTTER) * 0.5, ui.available_height());
+    let size = vec2((ui.available_width() - theme::GUTTER) * 0.5, ui.available_height() - theme::GRID);
     ui.horizontal_top(|ui| {
         for (id, of_secs, name) in
             [("against samples", false, "samples a pixel"), ("against seconds", true, "seconds of rendering")]
@@ -119,7 +121,8 @@ fn plot(ui: &mut Ui, state: &State, (id, of_secs, name): (&str, bool, &str), com
     let errors = &state.errors;
     let (places, palette) = (places(errors, of_secs), Palette::in_ui(ui));
     let colors: Vec<Color32> = errors.curves.iter().map(|live| marks::color(ui, live.key.entry.family)).collect();
-    let plot = log_log(id, [name, if errors.reference.is_some() { "RMSE" } else { "estimated noise" }]);
+    let height = ui.available_height();
+    let plot = log_log(id, [name, if errors.reference.is_some() { "RMSE" } else { "estimated noise" }]).height(height);
     let shown = plot.show(ui, |plot| {
         if let Some(first) = places.first() {
             // Where independent samples would lead from the first point.

@@ -127,7 +127,8 @@ pub fn show(ui: &mut Ui, state: &State) {
         ui.label(RichText::new(help).small().color(palette.dim));
     }
     let id = if trade.plot == Plot::Intersection { "intersection" } else { "model" };
-    log_log(id, axes).show(ui, |plot| {
+    let height = ui.available_height() - theme::GRID;
+    log_log(id, axes).height(height).show(ui, |plot| {
         let mut joined: Vec<[f64; 2]> = spots.iter().zip(&best).filter(|(_, best)| **best).map(|(spot, _)| logs(spot)).collect();
         joined.sort_by(|a, b| a[0].total_cmp(&b[0]));
         plot.line(Line::new("nobody is better at both", PlotPoints::from(joined)).color(palette.dim).width(1.0));
