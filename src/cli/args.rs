@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::geometry::num::narrow;
 use crate::render::light::Surroundings;
-use crate::render::{Curve, Tone, Transport};
+use crate::render::{Curve, Film, Tone, Transport};
 use crate::scene::{CameraSpec, Environment, Keep};
 
 use super::context::Context;
@@ -159,24 +159,44 @@ impl TransportArgs {
 /// How light becomes colour, in mode path.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct ToneArgs {
-    /// Exposure in stops: each doubles the light.
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops)]
-    pub exposure: f32,
+    /// Exposure in stops, each of which doubles the light; or auto, which makes what is seen a middle grey.
+    #[arg(long, value_name = "STOPS|auto", default_value = "0", allow_negative_numbers = true)]
+    pub exposure: Exposure,
     /// What becomes of light that is too bright: plain (white) or filmic (bent as film does).
     #[arg(long, default_value = "plain")]
     pub tone: Curve,
 }
 
 impl ToneArgs {
-    /// The same for the renderer.
-    pub const fn tone(self) -> Tone {
-        Tone { exposure: self.exposure, curve: self.tone }
+    /// The same for a picture.
+    pub fn tone(self, film: &Film) -> Tone {
+        let exposure = match self.exposure {
+            Exposure::Stops(stops) => stops,
+            Exposure::Auto => film.fitting_exposure().unwrap_or(0.0),
+        };
+        Tone { exposure, curve: self.tone }
     }
 }
 
-fn stops(text: &str) -> Result<f32, String> {
-    let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 32.0);
-    stops.ok_or_else(|| "it is not a number of stops from -32 to 32".to_owned())
+/// How bright a picture is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// By so much.
+    Stops(f32),
+    /// As suits it.
+    Auto,
+}
+
+impl FromStr for Exposure {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        if s == "auto" {
+            return Ok(Self::Auto);
+        }
+        let stops = s.parse().ok().filter(|stops: &f32| stops.abs() <= 32.0);
+        stops.map(Self::Stops).ok_or_else(|| "it is not a number of stops from -32 to 32, nor auto".to_owned())
+    }
 }
 
 /// A positive number.

@@ -107,7 +107,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         let picture = LinearPicture { width: size.0, height: size.1, pixels: still.film.linear(), notes: args.notes(&still) };
         out.write(&cx.cancel, |file| picture.write(file).map_err(std::io::Error::other))?;
     } else {
-        let pixels = still.develop(&job, None, args.tone.tone(), None, &cx.pool);
+        let pixels = still.develop(&job, None, args.tone.tone(&still.film), None, &cx.pool);
         out.write(&cx.cancel, |file| {
             let png = image::codecs::png::PngEncoder::new(&mut *file);
             png.write_image(&pixels, size.0, size.1, image::ExtendedColorType::Rgba8).map_err(std::io::Error::other)?;

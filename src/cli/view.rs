@@ -50,6 +50,9 @@ pub struct Args {
     /// Begin in the Check workspace; with --screenshot, run the stability lab and open the first case that rays slip through.
     #[arg(long, conflicts_with = "measure")]
     pub check: bool,
+    /// Begin in the Compare workspace with that plot: image, intersection or model; with --screenshot, fill it first.
+    #[arg(long, value_name = "PLOT", value_parser = ["image", "intersection", "model"], conflicts_with_all = ["measure", "check"])]
+    pub errors: Option<String>,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
@@ -80,6 +83,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         size: args.size.map(|size| [size.width as f32, size.height as f32]),
         measure: args.measure,
         check: args.check,
+        errors: args.errors.and_then(|plot| plot.parse().ok()),
         pace: args.pace,
         endure: args.endure,
         screenshot: args.screenshot,

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::spread::{self, Spread};
+use crate::geometry::num::narrow;
 
 /// Sums of samples. A pixel is red, green, blue and coverage; in scalar modes the first is the
 /// amount. Row 0 is the top.
@@ -129,6 +130,16 @@ impl Film {
         Some((sum / (3.0 * spreads.len() as f64)).sqrt())
     }
 
+    /// The exposure in stops that makes the geometric mean of what is seen a middle grey; `None` where all is black.
+    pub fn fitting_exposure(&self) -> Option<f32> {
+        /// What is darker is told apart by nobody, and would count for much in a mean of logarithms.
+        const LEAST: f32 = 1e-6;
+        let bright = |[r, g, b, hit]: [f32; 4]| (hit > 0.0).then(|| (0.2126 * r + 0.7152 * g + 0.0722 * b) / hit);
+        let seen = self.means().filter_map(bright).filter(|x| *x > LEAST && x.is_finite());
+        let (n, sum) = seen.fold((0u32, 0.0f64), |(n, sum), x| (n + 1, sum + f64::from(x.log2())));
+        (n > 0).then(|| narrow(0.18f64.log2() - sum / f64::from(n)))
+    }
+
     /// Linear red, green and blue of each pixel over black.
     pub fn linear(&self) -> Vec<[f32; 3]> {
         self.means().map(|[r, g, b, _]| [r, g, b]).collect()
@@ -137,5 +148,23 @@ impl Film {
     /// Linear depths of the first sample, in the scaled space.
     pub const fn depth(&self) -> &Arc<Vec<f32>> {
         &self.depth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exposure_that_fits_makes_the_mean_a_middle_grey() {
+        let mut film = Film::new(3, 1);
+        assert_eq!(film.fitting_exposure(), None, "nothing is seen");
+        for band in film.bands_mut(1) {
+            band.sums.copy_from_slice(&[[0.72, 0.72, 0.72, 1.0], [0.09, 0.09, 0.09, 0.5], [0.0; 4]]);
+        }
+        film.pass_done(2);
+        // Half of the second pixel is covered by 0.18: the geometric mean is 0.36, one stop too bright.
+        let stops = film.fitting_exposure().expect("something is seen");
+        assert!((stops + 1.0).abs() < 1e-5, "{stops}");
     }
 }

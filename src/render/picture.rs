@@ -57,6 +57,8 @@ pub struct Progress {
     pub secs: f64,
     /// The estimated noise, once there are two samples ([`super::Film::noise`]).
     pub noise: Option<f64>,
+    /// The exposure that would suit ([`super::Film::fitting_exposure`]), of path traced pictures.
+    pub exposure: Option<f32>,
     /// The share of pixels that got a sample in this pass: the others cannot see the scene, or have converged.
     pub share: f64,
     /// Rays traced a second in this pass, by all threads.

@@ -11,7 +11,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::tile::Job;
-use super::{Development, Film, Picture, Progress, Range, Shot, Tone, auto_range};
+use super::{Development, Film, Mode, Picture, Progress, Range, Shot, Tone, auto_range};
 use crate::accel;
 use crate::accel::probe::Counts;
 use crate::task::{Budget, Cancel, Cancelled, Pool};
@@ -202,6 +202,8 @@ struct Task {
     ray_secs: f64,
     /// Of the last pass.
     rays_per_sec: f64,
+    /// The exposure that suits the picture.
+    exposure: Option<f32>,
     /// The film of full resolution, kept over a pause.
     film: Option<Film>,
     /// Seconds of its passes.
@@ -320,6 +322,9 @@ impl<N: Fn()> Worker<N> {
     /// Makes a picture of a film, for whoever asked.
     fn publish(&mut self, task: &mut Task, film: &Film, step: u32) {
         let mode = task.request.job.mode;
+        if mode == Mode::Path && film.samples().is_power_of_two() {
+            task.exposure = film.fitting_exposure();
+        }
         let range = if mode.is_scalar() {
             *task.range.get_or_insert_with(|| auto_range(film, mode))
         } else {
@@ -333,6 +338,7 @@ impl<N: Fn()> Worker<N> {
             samples: film.samples(),
             share: film.share(),
             noise: film.noise(),
+            exposure: task.exposure,
             step,
             secs: task.start.elapsed().as_secs_f64(),
             rays_per_sec: task.rays_per_sec,
@@ -405,6 +411,7 @@ impl Task {
             counted: 0,
             ray_secs: 0.0,
             rays_per_sec: 0.0,
+            exposure: None,
             film: None,
             film_secs: 0.0,
             redevelop: false,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::settings::{Settings, ThemeChoice, Workspace};
+use super::tradeoffs::Plot;
 use crate::render::Mode;
 use crate::scene::CameraSpec;
 
@@ -33,6 +34,8 @@ pub struct ViewerOptions {
     pub measure: bool,
     /// Begin in the Check workspace; with `screenshot`, run the lab first.
     pub check: bool,
+    /// Begin in the Compare workspace with that plot; with `screenshot`, fill it first.
+    pub errors: Option<Plot>,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
     /// Switch structures a thousand times and open fifty models before that, to see what becomes of the memory.
@@ -61,6 +64,12 @@ impl ViewerOptions {
         settings.theme = self.theme.unwrap_or(settings.theme);
         if self.check {
             settings.workspace = Workspace::Check;
+        }
+        if let Some(plot) = self.errors {
+            settings.workspace = Workspace::Compare;
+            if plot == Plot::Image {
+                settings.mode = Mode::Path;
+            }
         }
         let overlay = &mut settings.overlay;
         if let Some(depth) = self.depth {

@@ -15,6 +15,7 @@ use super::pace::Pace;
 use super::panels::Commands;
 use super::rehearsal::Rehearsal;
 use super::state::State;
+use super::tradeoffs::Plot;
 use crate::sys::{folder_of, temporary_in};
 
 /// What is still to be done.
@@ -23,6 +24,8 @@ pub struct Screenshot {
     path: PathBuf,
     measure: bool,
     check: bool,
+    /// The plot of errors that is still to be filled, and how far that is.
+    errors: Option<(Plot, usize)>,
     rehearsal: Option<Rehearsal>,
     endurance: Option<Endurance>,
     /// What the long run found, in words.
@@ -64,6 +67,7 @@ impl Screenshot {
             path,
             measure: options.measure,
             check: options.check,
+            errors: options.errors.map(|plot| (plot, 0)),
             rehearsal: options.pace.then(Rehearsal::default),
             endurance: options.endure.then(Endurance::default),
             endured: String::new(),
@@ -91,6 +95,7 @@ impl Screenshot {
                     self.stage = Stage::Settling;
                 }
             }
+            Stage::Settling if settled && self.errors.is_some() => self.fill(state, commands),
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
                 self.stage = Stage::Measuring;
@@ -127,6 +132,30 @@ impl Screenshot {
                 }
             }
             Stage::Settling | Stage::Measuring | Stage::Checking | Stage::Done => {}
+        }
+    }
+}
+
+/// Structures whose curves of errors are drawn beside that of the one that is shown first.
+const BESIDE: [&str; 3] = ["wide", "kdtree", "grid2"];
+
+impl Screenshot {
+    /// Does the next thing that fills a plot of errors.
+    fn fill(&mut self, state: &State, commands: &mut Commands) {
+        let Some((plot, step)) = &mut self.errors else { return };
+        let next = match (*plot, *step) {
+            (Plot::Image, step) if step < BESIDE.len() => Some(Command::Structure(BESIDE[step])),
+            (Plot::Image, step) if step == BESIDE.len() => Some(Command::MakeReference),
+            (Plot::Image, _) => None,
+            (plot, 0) => Some(Command::ErrorPlot(plot)),
+            (_, 1) => Some(Command::MeasureTradeoffs),
+            _ => None,
+        };
+        *step += 1;
+        match next {
+            Some(next) => commands.push(next),
+            None if state.errors.erring.is_none() || self.start.elapsed() > PATIENCE => self.errors = None,
+            None => {}
         }
     }
 }

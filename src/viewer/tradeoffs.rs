@@ -37,6 +37,15 @@ impl Plot {
     /// All, in the order of tabs.
     pub const ALL: [Self; 3] = [Self::Image, Self::Intersection, Self::Model];
 
+    /// The name on the command line.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Image => "image",
+            Self::Intersection => "intersection",
+            Self::Model => "model",
+        }
+    }
+
     /// The name on the tab.
     pub const fn name(self) -> &'static str {
         match self {
@@ -53,6 +62,15 @@ impl Plot {
             Self::Intersection => "How triangle tests err on hard rays of this view, against the time of a ray.",
             Self::Model => "How good each structure is, against the time of its build; and how far predictions are off.",
         }
+    }
+}
+
+impl std::str::FromStr for Plot {
+    type Err = String;
+
+    fn from_str(s: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|plot| plot.id() == s);
+        known.ok_or_else(|| format!("there is no plot '{s}': use image, intersection or model"))
     }
 }
 

@@ -25,7 +25,7 @@ use crate::lab::{
     measure,
 };
 use crate::render::sampler::SamplerKind;
-use crate::render::{self, Job, Mode, Tone, Until};
+use crate::render::{self, Curve, Job, Mode, Tone, Until};
 use crate::scene::texture::Detail;
 use crate::scene::{Camera, CameraSpec, Finding};
 use crate::task::{Cancel, Progress};
@@ -246,12 +246,14 @@ fn pictures(view: &impl Fn(Mode) -> Job, amount: &Amount, cx: &Context) -> Resul
         let size = (amount.picture.width, amount.picture.height);
         let until = Until::samples(spp);
         let still = bar::watch("pictures", &progress, || render::render(&job, size, &until, &cx.pool, &cx.cancel, &progress))?;
-        let rgba = still.develop(&job, None, Tone::default(), None, &cx.pool);
+        let exposure = still.film.fitting_exposure().filter(|_| mode == Mode::Path).unwrap_or(0.0);
+        let rgba = still.develop(&job, None, Tone { exposure, curve: Curve::Filmic }, None, &cx.pool);
         let mut png = Vec::new();
         let encoder = image::codecs::png::PngEncoder::new(&mut png);
         image::ImageEncoder::write_image(encoder, &rgba, size.0, size.1, image::ExtendedColorType::Rgba8)
             .map_err(|error| Failure::Other(error.into()))?;
-        pictures.push(Shown { png, caption: format!("{}, {spp} samples a pixel.", mode.label()) });
+        let exposed = if mode == Mode::Path { format!(", {exposure:+.1} stops, filmic") } else { String::new() };
+        pictures.push(Shown { png, caption: format!("{}, {spp} samples a pixel{exposed}.", mode.label()) });
     }
     Ok(pictures)
 }

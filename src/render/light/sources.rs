@@ -77,6 +77,9 @@ pub struct Incoming {
     pub density: f32,
 }
 
+/// What light is of.
+pub type Of<'a> = (&'a Scene, &'a Geometry, &'a Textures);
+
 /// The brightness of a linear colour (ITU-R BT.709).
 pub fn brightness(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
@@ -139,13 +142,7 @@ impl Sources {
     }
 
     /// Light that may come to a point of the scaled space from a source that `which` chooses.
-    pub fn choose(
-        &self,
-        (scene, geometry, textures): (&Scene, &Geometry, &Textures),
-        point: Vec3,
-        which: f32,
-        u: Vec2,
-    ) -> Option<Incoming> {
+    pub fn choose(&self, (scene, geometry, textures): Of<'_>, point: Vec3, which: f32, u: Vec2) -> Option<Incoming> {
         let [triangles, beams, sun, dome] = self.chances;
         let (mut from, mut which) = (0.0, which);
         // The number is used again within what it has chosen.
@@ -175,13 +172,7 @@ impl Sources {
         }
     }
 
-    fn of_triangle(
-        &self,
-        (scene, geometry, textures): (&Scene, &Geometry, &Textures),
-        point: Vec3,
-        which: f32,
-        u: Vec2,
-    ) -> Option<Incoming> {
+    fn of_triangle(&self, (scene, geometry, textures): Of<'_>, point: Vec3, which: f32, u: Vec2) -> Option<Incoming> {
         let chosen = self.shining.choose(scene, textures, which, u)?;
         let away = chosen.at - point;
         let distance = away.length();

@@ -62,6 +62,11 @@ fn light(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let mut tone = state.settings.tone;
     let stops = DragValue::new(&mut tone.exposure).range(-16.0..=16.0).speed(0.05).fixed_decimals(1).suffix(" EV");
     ui.add(stops).on_hover_text("Exposure in stops: each doubles the light. Drag, or click to type.");
+    let fitting = state.picture.as_ref().and_then(|picture| picture.progress.exposure);
+    let auto = ui.add_enabled(fitting.is_some(), Button::new("Auto"));
+    if auto.on_hover_text("Expose what is seen to a middle grey.").clicked() {
+        tone.exposure = fitting.map_or(tone.exposure, |stops| (stops * 10.0).round() / 10.0).clamp(-16.0, 16.0);
+    }
     let combo = ComboBox::from_id_salt("tone").width(16.0 * theme::GRID).selected_text(tone.curve.label());
     let combo = combo.show_ui(ui, |ui| {
         for curve in Curve::ALL {

@@ -65,6 +65,7 @@ impl State {
             self.checks.mark_case(&model.rays);
         }
         self.range = None;
+        self.models += 1;
         self.renderer.clear();
         self.model = Some(model);
         self.choose();

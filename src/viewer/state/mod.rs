@@ -146,6 +146,8 @@ pub struct State {
     /// Nodes a ray of the structure shown before, to be compared once the new one is counted.
     before: Option<(&'static str, f64)>,
     generation: u64,
+    /// Models that were opened: the number of the present one.
+    models: u64,
     shared: Shared,
 }
 
@@ -247,6 +249,7 @@ impl State {
             requested_at: Instant::now(),
             before: None,
             generation: 0,
+            models: 0,
             shared,
         })
     }

@@ -33,7 +33,7 @@ impl State {
         let asked = Asked {
             number,
             key: shown.key.clone(),
-            model: self.generation,
+            model: self.models,
             camera: self.camera,
             mode,
             range: self.range,
