@@ -95,6 +95,9 @@ pub struct Outcome {
 
 pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let Many(entries) = &args.structures;
+    if Reference::has_samples_of(args.seed.seed) {
+        return Err(Failure::Input("that seed is the reference's, which has to be independent: use another".to_owned()));
+    }
     let params = args.build.params(entries)?;
     let folder = Folder::at(&args.output)?;
     let cx = Context::new(args.model.machine, cancel);
@@ -270,8 +273,10 @@ pub fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
             hollow: p.hollow,
         };
         let name = if several { format!("{}, {}", curve.structure, curve.sampler.id()) } else { curve.structure.clone() };
-        let dashed = curve.sampler != curves[0].sampler;
-        Plotted { id: curve.structure.clone(), name, dashed, points: curve.points.iter().map(dot).collect() }
+        let mut samplers: Vec<SamplerKind> = curves.iter().map(|c| c.sampler).collect();
+        samplers.dedup();
+        let dash = samplers.iter().position(|sampler| *sampler == curve.sampler).unwrap_or(0);
+        Plotted { id: curve.structure.clone(), name, dash, points: curve.points.iter().map(dot).collect() }
     };
     let reference = &outcome.convergence.reference;
     let panel = |title: &str, x: &'static str, of_secs: bool| Panel {

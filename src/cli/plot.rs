@@ -32,8 +32,8 @@ pub struct Curve {
     pub id: String,
     /// What it is called.
     pub name: String,
-    /// Whether its line is broken.
-    pub dashed: bool,
+    /// How its line is broken: not at all for 0.
+    pub dash: usize,
     /// From left to right.
     pub points: Vec<Dot>,
 }
@@ -53,7 +53,7 @@ impl Curve {
     /// Of one structure, called by its id.
     pub fn of(id: &str, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let points = points.into_iter().map(|at| Dot { at, span: None, hollow: false }).collect();
-        Self { id: id.to_owned(), name: id.to_owned(), dashed: false, points }
+        Self { id: id.to_owned(), name: id.to_owned(), dash: 0, points }
     }
 }
 
@@ -103,7 +103,7 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
     let all: Vec<(f64, f64)> = panel.curves.iter().flat_map(|c| &c.points).filter(|dot| is_drawable(dot)).map(|d| d.at).collect();
     let span = |of: fn(&(f64, f64)) -> f64| {
         let (low, high) = all.iter().map(of).fold((f64::INFINITY, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
-        if low < high { low * 0.7..high * 1.4 } else { 0.1..10.0 }
+        if low <= high { low * 0.7..high * 1.4 } else { 0.1..10.0 }
     };
     let (xs, ys) = (span(|p| p.0), span(|p| p.1));
     let mut chart = ChartBuilder::on(area)
@@ -143,12 +143,12 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
             chart.draw_series(std::iter::once(Polygon::new(band, color.mix(0.18))))?;
         }
         let (at, style) = (dots.iter().map(|dot| dot.at), color.stroke_width(2));
-        let series = if curve.dashed {
-            chart.draw_series(DashedLineSeries::new(at, 6, 4, style))?
-        } else {
-            chart.draw_series(LineSeries::new(at, style))?
+        let series = match curve.dash {
+            0 => chart.draw_series(LineSeries::new(at, style))?,
+            1 => chart.draw_series(DashedLineSeries::new(at, 6, 4, style))?,
+            _ => chart.draw_series(DashedLineSeries::new(at, 2, 3, style))?,
         };
-        let gap = if curve.dashed { 4 } else { 0 };
+        let gap = [0, 4, 9][curve.dash.min(2)];
         let key = move |at| {
             let part = |from: i32, to: i32| PathElement::new([(from, 0), (to, 0)], style);
             let ends = EmptyElement::at(at) + part(-10, -gap) + part(20 + gap, 30);

@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::building::build_timed;
@@ -121,6 +122,8 @@ pub struct Tradeoffs {
 
 /// Hard rays, at most.
 const HARD: usize = 24_000;
+/// Rays traced at a time.
+const CHUNK: usize = 256;
 /// Seconds that a structure is judged for.
 const JUDGED: f64 = 0.5;
 
@@ -217,17 +220,21 @@ impl Tradeoffs {
                 rays: judged.rays,
                 wrong_per_million: per_million(judged.wrong),
                 rounded_per_million: per_million(judged.rounded),
-                p999_ulps: self.p999_ulps(accel.as_ref(), cancel)?,
+                p999_ulps: self.p999_ulps(accel.as_ref(), judged.rays, pool, cancel)?,
             });
         }
         Ok(())
     }
 
-    /// Over hits on the triangle that is hit exactly.
-    fn p999_ulps(&self, accel: &dyn Accel, cancel: &Cancel) -> Result<f64, Cancelled> {
-        let mut hits = vec![None; self.hard.rays.len()];
-        accel.trace(&self.hard.rays, Mode::Closest, &mut hits, cancel)?;
-        let both = hits.iter().zip(&self.exact).filter_map(|(a, b)| a.zip(*b));
+    /// Over hits on the triangle that is hit exactly, of about so many rays: a slow structure was not asked more.
+    fn p999_ulps(&self, accel: &dyn Accel, rays: usize, pool: &Pool, cancel: &Cancel) -> Result<f64, Cancelled> {
+        let every = self.hard.rays.len().div_ceil(rays.max(1)).max(1);
+        let some: Vec<Ray> = self.hard.rays.iter().step_by(every).copied().collect();
+        let mut hits = vec![None; some.len()];
+        let trace = |(rays, hits): (&[Ray], &mut [Option<Hit>])| accel.trace(rays, Mode::Closest, hits, cancel).map(|_| ());
+        pool.run(|| some.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK)).try_for_each(trace))?;
+        let exact = self.exact.iter().step_by(every);
+        let both = hits.iter().zip(exact).filter_map(|(a, b)| a.zip(*b));
         let same = both.filter(|(a, b)| (a.instance, a.primitive) == (b.instance, b.primitive));
         let mut errors: Vec<f64> = same.map(|(a, b)| f64::from((a.t - b.t).abs() / ulp(b.t))).collect();
         errors.sort_unstable_by(f64::total_cmp);

@@ -114,6 +114,8 @@ impl Renderer {
         state.picture = None;
         state.number += 1;
         state.cancel.cancel();
+        // Whoever waits with what was traced lets go of it.
+        self.shared.wake.notify_all();
     }
 
     /// The newest picture.
@@ -422,7 +424,7 @@ impl Task {
 
     /// A new request after this one, which goes on with its samples where it can.
     fn after(self, request: Request, number: u64) -> Self {
-        if self.film.is_some() && request.has_samples_of(&self.request) {
+        if self.film.as_ref().is_some_and(|film| film.samples() > 0) && request.has_samples_of(&self.request) {
             Self { number, range: request.range, redevelop: true, request, ..self }
         } else {
             Self::new(request, number)

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::spread::LEAST;
 use super::{Development, Film, Job, Range, Tone, Work, auto_range};
 use crate::task::{Cancel, Cancelled, Pool, Progress};
 
@@ -33,7 +34,9 @@ impl Until {
     }
 
     fn is_reached(&self, film: &Film, secs: f64) -> bool {
-        let sure = self.noise.zip(film.noise()).is_some_and(|(wanted, noise)| noise <= wanted);
+        // Of a few samples alike, black ones say, nothing is known of their noise.
+        let some = film.samples() >= LEAST;
+        let sure = some && self.noise.zip(film.noise()).is_some_and(|(wanted, noise)| noise <= wanted);
         film.is_done(self.samples.max(1)) || self.secs.is_some_and(|most| secs >= most) || sure
     }
 }

@@ -148,6 +148,7 @@ impl Job {
         }
         let sampler = |i: usize| self.sampling.of(pixels[i].0, pixels[i].1, sample);
         if self.mode == Mode::Ao {
+            watch.lap(&mut work.shading);
             work.rays += self.occlude(&rays, &hits, |i| sampler(i).pair(1), &mut samples, cancel)?;
             watch.lap(&mut work.tracing);
         }

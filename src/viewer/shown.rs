@@ -12,15 +12,23 @@ static GENERATION: AtomicU64 = AtomicU64::new(u64::MAX);
 /// The share of pixels whose difference is beyond the ends of the range.
 const BEYOND: usize = 200;
 
-/// A picture of light, in place of the present one.
-pub fn picture(light: &[[f32; 3]], reference: Option<&[[f32; 3]]>, present: &Picture, tone: Tone) -> Picture {
+/// A picture of light of that size, in place of the present one.
+pub fn picture(
+    light: &[[f32; 3]],
+    reference: Option<&[[f32; 3]]>,
+    (present, [width, height]): (&Picture, [u32; 2]),
+    tone: Tone,
+) -> Picture {
     let (rgba, range) = match reference {
         None => (light.iter().flat_map(|pixel| tone.of(*pixel).map(|x| byte(encode(x)))).collect(), present.range),
         Some(reference) => differences(light, reference),
     };
     let rgba = if reference.is_none() { opaque(&rgba) } else { rgba };
     let generation = GENERATION.fetch_sub(1, Ordering::Relaxed);
-    Picture { generation, rgba, range, depth: Arc::clone(&present.depth), shots: Vec::new(), ..present.clone() }
+    // While the present picture is coarse it has no depth for each pixel.
+    let whole = (present.width, present.height) == (width, height);
+    let depth = if whole { Arc::clone(&present.depth) } else { Arc::new(vec![f32::INFINITY; light.len()]) };
+    Picture { generation, width, height, rgba, range, depth, shots: Vec::new(), ..present.clone() }
 }
 
 /// Brightness less the reference's, blue where it is too dark and orange where it is too bright.

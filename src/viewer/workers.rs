@@ -322,12 +322,12 @@ pub fn develop(
     shared: &Shared,
     shot: Arc<Shot>,
     reference: Option<Arc<Reference>>,
-    present: Arc<Picture>,
+    (present, size_px): (Arc<Picture>, [u32; 2]),
     tone: Tone,
 ) -> std::io::Result<Developing> {
     Job::spawn("develop", shared.waker(), move |_, _| {
         let light = shot.light.as_deref().ok_or(Cancelled)?;
-        Ok(shown::picture(light, reference.as_deref().map(|r| &r.pixels[..]), &present, tone))
+        Ok(shown::picture(light, reference.as_deref().map(|r| &r.pixels[..]), (&present, size_px), tone))
     })
 }
 

@@ -62,7 +62,9 @@ fn errors_fall_with_samples_and_are_measured_against_a_reference() {
     w.harness.get_all_by_role_and_label(Role::Button, "BVH").last().expect("a row").click();
     w.step();
     w.until("its picture", |s| s.is_held());
-    assert!(w.state().on_screen().is_some_and(|shown| shown.rgba != before));
+    let size = w.state().size_px;
+    let held = w.state().on_screen().expect("it").clone();
+    assert!([held.width, held.height] == size && held.rgba.len() == before.len() && held.rgba != before);
     w.step();
     let describes = |w: &Window, what: &str| {
         w.harness.get_by_role(Role::Canvas).accesskit_node().description().is_some_and(|d| d.contains(what))

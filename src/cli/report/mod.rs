@@ -201,15 +201,36 @@ impl Args {
         let model = &self.model.model;
         let model = if model.contains(' ') { format!("\"{model}\"") } else { model.clone() };
         let (rays, size) = (amount.rays, amount.converge);
-        let test = self.build.test.id();
         let quick = if self.quick { " --quick" } else { "" };
+        let view = passed_on(&["--camera", "--set", "--test", "--threads", "--memory"]);
+        let light = passed_on(&["--environment", "--environment-turn", "--environment-strength", "--sun"]);
+        let (spp, runs) = (amount.converge_spp, amount.runs);
         vec![
-            format!("boxwood report {model} -o DIR{quick} --structures {ids} --test {test}"),
-            format!("boxwood compare {model} --structures {ids} --test {test} --size {rays} --quality --fit-costs"),
-            format!("boxwood converge {model} -o DIR --structures {ids} --size {size} --spp {}", amount.converge_spp),
-            format!("boxwood check {model} --structures {ids} --test {test} --size {}", amount.check),
+            format!("boxwood report {model} -o DIR{quick} --structures {ids}{view}{light}"),
+            format!("boxwood compare {model} --structures {ids} --size {rays} --flatten --quality --fit-costs{view}"),
+            format!(
+                "boxwood converge {model} -o DIR --structures {ids} --size {size} --spp {spp} --runs {runs} --flatten{view}{light}"
+            ),
+            format!("boxwood check {model} --structures {ids} --size {}{view}", amount.check),
         ]
     }
+}
+
+/// Those of the arguments that this program was given, as they were typed.
+fn passed_on(names: &[&str]) -> String {
+    let mut said = String::new();
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        let (name, value) = match argument.split_once('=') {
+            Some((name, value)) => (name.to_owned(), Some(value.to_owned())),
+            None => (argument, None),
+        };
+        if names.contains(&name.as_str()) {
+            let value = value.or_else(|| arguments.next()).unwrap_or_default();
+            said += &if value.contains(' ') { format!(" {name} \"{value}\"") } else { format!(" {name} {value}") };
+        }
+    }
+    said
 }
 
 /// Times the structures on three kinds of rays, and fits their costs.

@@ -194,7 +194,7 @@ fn pareto(title: &str, axes: [&'static str; 2], points: Vec<(String, String, (f6
     let at: Vec<(f64, f64)> = points.iter().map(|point| point.2).collect();
     let mut best: Vec<(f64, f64)> = at.iter().zip(front(&at)).filter(|(_, best)| *best).map(|(at, _)| *at).collect();
     best.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let front = Curve { name: String::new(), dashed: true, ..Curve::of("", best) };
+    let front = Curve { name: String::new(), dash: 1, ..Curve::of("", best) };
     let point = |(id, name, at): (String, String, (f64, f64))| Curve { name, ..Curve::of(&id, [at]) };
     let curves = std::iter::once(front).chain(points.into_iter().map(point)).collect();
     Panel { title: title.to_owned(), axes, curves, guide: None, labelled: true }
@@ -207,7 +207,9 @@ fn intersection_error(page: &mut Page, all: &Everything) -> Result<(), String> {
         let rows = all.tradeoffs.iter().flat_map(|row| row.tests.iter().map(move |test| (row, test)));
         rows.map(|(row, test)| {
             // What is nothing has no logarithm.
-            (row.structure.clone(), format!("{} {}", row.name, test.test.id()), (test.ns, of(test).max(0.1)))
+            let error = of(test);
+            let drawn = if error.is_nan() { error } else { error.max(0.1) };
+            (row.structure.clone(), format!("{} {}", row.name, test.test.id()), (test.ns, drawn))
         })
         .collect::<Vec<_>>()
     };
@@ -216,7 +218,8 @@ fn intersection_error(page: &mut Page, all: &Everything) -> Result<(), String> {
         ["ns a hard ray", "in a million (0 is drawn at 0.1)"],
         points(|t| t.rounded_per_million),
     );
-    let ulps = pareto("Error of t", ["ns a hard ray", "ulps that one hit in a thousand exceeds"], points(|t| t.p999_ulps));
+    let ulps =
+        pareto("Error of t", ["ns a hard ray", "ulps, one hit in a thousand (0 is drawn at 0.1)"], points(|t| t.p999_ulps));
     for panel in [rounded, ulps] {
         let caption = format!("{}: those joined are beaten by nobody at both.", panel.title);
         page.plot(&log_log(&[panel]).map_err(|error| error.to_string())?, &caption);

@@ -71,11 +71,16 @@ pub fn evaluate(rendered: &Rendered, reference: &Reference) -> Convergence {
             };
             for (lane, curve) in rendered.lanes.iter().zip(&curves).filter(|(lane, _)| lane.structure == *structure) {
                 let Some(first) = rendered.lanes.iter().position(|first| first.sampler == lane.sampler) else { continue };
-                for (i, (shot, other)) in lane.shots.iter().zip(&rendered.lanes[first].shots).enumerate() {
+                // One that ran out of time has a last picture of a number of samples of its own.
+                for (i, shot) in lane.shots.iter().enumerate() {
+                    let same_samples = |other: &&run::Shot| other.spp == shot.spp;
+                    let Some(other) = rendered.lanes[first].shots.iter().find(same_samples) else { continue };
                     let differing = shot.differing(other);
                     agreement.identical &= differing == 0;
                     agreement.pixels = agreement.pixels.max(differing);
-                    let (a, b) = (curve.points[i].errors.rmse, curves[first].points[i].errors.rmse);
+                    let beside = curves[first].points.iter().find(|point| point.spp == shot.spp);
+                    let a = curve.points[i].errors.rmse;
+                    let b = beside.map_or(a, |point| point.errors.rmse);
                     let relative = if b > 0.0 { (a - b).abs() / b } else { 0.0 };
                     agreement.rmse_difference = agreement.rmse_difference.max(relative);
                 }

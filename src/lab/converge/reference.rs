@@ -5,6 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use serde::Serialize;
 
 use crate::lab::rms_difference;
+use crate::render::light::Surroundings;
 use crate::render::sampler::{SamplerKind, Sampling};
 use crate::render::{Film, Job, LinearPicture};
 use crate::task::{Cancel, Cancelled, Pool, Progress};
@@ -99,11 +100,19 @@ impl Reference {
         Some(Self { pixels: picture.pixels, facts })
     }
 
+    /// Whether pictures of that seed would be made of the same samples as references are.
+    pub const fn has_samples_of(seed: u32) -> bool {
+        seed == SEED || seed == SEED + 1
+    }
+
     /// Whether it will do for pictures of that job and size and at most so many samples.
     pub fn suits(&self, job: &Job, size: [u32; 2], spp: u32) -> bool {
         self.facts.size == size && self.facts.spp >= spp && self.facts.seed == SEED && self.facts.scene_hash == hash_of(job, size)
     }
 }
+
+/// Grows whenever light is followed otherwise, so that references of before are made anew.
+const VERSION: u32 = 1;
 
 /// A number for everything that a path traced picture depends on but its samples.
 pub fn hash_of(job: &Job, size: [u32; 2]) -> u64 {
@@ -129,9 +138,16 @@ pub fn hash_of(job: &Job, size: [u32; 2]) -> u64 {
         mesh.colors.iter().for_each(|color| floats(&mut hasher, color));
         mesh.material.hash(&mut hasher);
     }
+    for texture in (0..scene.images.len()).filter_map(|image| job.looks.textures().get(image)) {
+        (texture.size(), texture.texels()).hash(&mut hasher);
+    }
+    let surroundings = job.looks.surroundings();
+    if let Surroundings::Image { image, .. } = surroundings {
+        image.texels().iter().for_each(|texel| floats(&mut hasher, texel));
+    }
     // What has no bits of its own is told as text.
-    format!("{:?} {:?} {camera:?} {transport:?} {size:?} {}", scene.materials, scene.lights, job.looks.surroundings().describe())
-        .hash(&mut hasher);
+    let (materials, lights, around) = (&scene.materials, &scene.lights, surroundings.describe());
+    format!("{VERSION} {materials:?} {lights:?} {:?} {camera:?} {transport:?} {size:?} {around}", scene.up).hash(&mut hasher);
     hasher.finish()
 }
 

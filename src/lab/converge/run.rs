@@ -130,6 +130,10 @@ pub fn render(job: &Job, runners: &[Runner], options: &ConvergeOptions, cx: &Con
     }
     let rounds = lanes.len() as u64 * u64::from(options.runs);
     cx.progress.start("curves", rounds * STEPS);
+    // What is worked out once, for whoever comes first, is not timed.
+    for job in &jobs {
+        job.pass(&mut Film::new(WARM, WARM), &cx.pool, &cx.cancel)?;
+    }
     for run in 0..options.runs {
         for i in 0..lanes.len() {
             // In turns, so that whatever drifts meets everybody.
@@ -153,6 +157,9 @@ pub fn render(job: &Job, runners: &[Runner], options: &ConvergeOptions, cx: &Con
     }
     Ok(Rendered { lanes, agreements, _memory: memory })
 }
+
+/// Columns and rows of a pass that is not timed.
+const WARM: u32 = 16;
 
 /// Parts of a run that progress is told in.
 const STEPS: u64 = 1000;
@@ -193,7 +200,7 @@ fn first_run(
         let by_samples = f64::from(spp) / f64::from(options.spp);
         told.tell(by_samples.max(options.secs.map_or(0.0, |most| secs / most)), &cx.progress);
         // Of a slow structure the last picture counts too, though it is of an odd number of samples.
-        if spp.is_power_of_two() || film.is_done(options.spp) {
+        if spp.is_power_of_two() || film.is_done(options.spp) || enough(secs) {
             let pixels = film.linear();
             let same = |other: &&Shot| other.spp == spp && *other.pixels == pixels;
             let known = before.iter().filter(|other| other.sampler == lane.sampler).flat_map(|other| &other.shots).find(same);

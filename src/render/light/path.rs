@@ -74,8 +74,10 @@ impl Job {
     ) -> Result<(), Cancelled> {
         let Transport { surfaces, certain, clamp } = self.transport;
         let mut paths: Vec<Path> = (0..rays.len()).map(|of| Path { of, share: Vec3::ONE, density: f32::INFINITY }).collect();
-        for surface in 0..surfaces {
-            let clamp = clamp.filter(|_| surface > 0);
+        // Beyond the last surface nothing is asked, but what its direction finds belongs to it.
+        for surface in 0..=surfaces {
+            // Light that was asked for here came over this surface, light that is found here only over those before.
+            let (clamp_asked, clamp_found) = (clamp.filter(|_| surface > 0), clamp.filter(|_| surface > 1));
             let (mut asked, mut questions) = (Vec::new(), Vec::new());
             let (mut next_paths, mut next_rays) = (Vec::new(), Vec::new());
             for ((path, ray), hit) in paths.iter().zip(&rays).zip(&hits) {
@@ -84,7 +86,7 @@ impl Job {
                     if surface > 0 {
                         let (radiance, found) = sources.far(ray.dir.normalize_or_zero());
                         let light = path.share * radiance * weight(path.density, found);
-                        add(&mut samples[path.of], limited(light, clamp, work));
+                        add(&mut samples[path.of], limited(light, clamp_found, work));
                     }
                     continue;
                 };
@@ -92,18 +94,18 @@ impl Job {
                 if at.emission.max_element() > 0.0 {
                     let found = sources.density(at.material) * at.per_solid_angle;
                     let light = path.share * at.emission * weight(path.density, found);
-                    add(&mut samples[path.of], limited(light, clamp, work));
+                    add(&mut samples[path.of], limited(light, clamp_found, work));
                 } else if surface == 0 {
                     add(&mut samples[path.of], Vec3::ZERO);
+                }
+                if surface == surfaces {
+                    continue;
                 }
                 let (sampler, set) = (sampler(path.of), FIRST + surface * EACH);
                 let [which, x, y, chance] = sampler.four(set);
                 if let Some((light, question)) = at.ask(self, sources, which, Vec2::new(x, y)) {
                     asked.push(Asked { of: path.of, light: path.share * light });
                     questions.push(question);
-                }
-                if surface + 1 == surfaces {
-                    continue;
                 }
                 let [which, x, y, _] = sampler.four(set + 1);
                 if let Some((share, density, ray)) = at.go_on(self, which, Vec2::new(x, y)) {
@@ -121,7 +123,7 @@ impl Job {
             self.trace(&questions, accel::Mode::Any, &mut blocked, cancel)?;
             watch.lap(&mut work.tracing);
             for (asked, _) in asked.iter().zip(&blocked).filter(|(_, blocked)| blocked.is_none()) {
-                add(&mut samples[asked.of], limited(asked.light, clamp, work));
+                add(&mut samples[asked.of], limited(asked.light, clamp_asked, work));
             }
             if next_rays.is_empty() {
                 break;
@@ -210,11 +212,12 @@ impl Surface {
         let geometry = job.accel.geometry();
         let seen = self.seen.as_ref()?;
         let incoming = sources.choose((&job.scene, geometry, job.looks.textures()), self.point.at, which, u)?;
-        // Light that the triangle itself is turned away from does not pass through it.
-        if self.point.normal.dot(incoming.dir) <= 0.0 {
+        // Light from behind is not asked for, also where the surface is clear: only its own directions find it.
+        let from = to_local(&self.axes, incoming.dir);
+        if self.point.normal.dot(incoming.dir) <= 0.0 || from.z <= 0.0 {
             return None;
         }
-        let (response, drawn) = seen.evaluate(to_local(&self.axes, incoming.dir));
+        let (response, drawn) = seen.evaluate(from);
         let alone = incoming.density.is_infinite();
         let light = response * incoming.light * if alone { 1.0 } else { weight(incoming.density, drawn) };
         if light.max_element() <= 0.0 || !light.is_finite() {
@@ -236,7 +239,9 @@ impl Surface {
             return None;
         }
         let point = if side > 0.0 { self.point } else { self.point.other_side() };
-        (drawn.weight.max_element() > 0.0).then(|| (drawn.weight, drawn.density, point.ray(job.accel.geometry(), dir)))
+        // What is seen through it nobody asks for.
+        let density = if side > 0.0 { drawn.density } else { f32::INFINITY };
+        (drawn.weight.max_element() > 0.0).then(|| (drawn.weight, density, point.ray(job.accel.geometry(), dir)))
     }
 }
 

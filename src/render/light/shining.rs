@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::sources::brightness;
 use crate::geometry::num::narrow;
 use crate::scene::texture::Textures;
-use crate::scene::{Finish, Geometry, Material, Scene};
+use crate::scene::{Alpha, Finish, Geometry, Material, Scene, coverage};
 use crate::task::{Cancel, Cancelled};
 
 /// The triangles of a scene that shine. Lengths and areas are those of the scaled space.
@@ -31,6 +31,8 @@ struct Emitter {
     radiance: Option<Vec3>,
     /// How densely its points are chosen but for the power of all.
     brightness: f32,
+    /// Whether it may not be there in places, and does not shine there.
+    has_holes: bool,
 }
 
 /// A point that light comes from.
@@ -77,7 +79,16 @@ impl Shining {
                 let cross = (b - a).as_dvec3().cross((c - a).as_dvec3());
                 let normal = cross.try_normalize()?.as_vec3();
                 let (corner, edges) = (a, [b - a, c - a]);
-                let emitter = Emitter { instance: number, primitive, corner, edges, normal, radiance, brightness: bright };
+                let emitter = Emitter {
+                    instance: number,
+                    primitive,
+                    corner,
+                    edges,
+                    normal,
+                    radiance,
+                    brightness: bright,
+                    has_holes: material.alpha != Alpha::Opaque,
+                };
                 Some((emitter, 0.5 * cross.length())).filter(|(_, area)| area.is_finite() && *area > 0.0)
             };
             let chunk = |from: usize| {
@@ -113,10 +124,13 @@ impl Shining {
         let root = u.x.sqrt();
         let (v, w) = (root * (1.0 - u.y), root * u.y);
         let at = emitter.corner + emitter.edges[0] * v + emitter.edges[1] * w;
-        let radiance = emitter.radiance.unwrap_or_else(|| {
-            let mesh = scene.instances[emitter.instance as usize].mesh;
-            Finish::new(scene, mesh, textures).emission(emitter.primitive, v, w).into()
-        });
+        let mesh = || scene.instances[emitter.instance as usize].mesh;
+        let there = || coverage::Surface::new(scene, mesh(), textures).covers(emitter.instance, emitter.primitive, v, w);
+        if emitter.has_holes && !there() {
+            return None;
+        }
+        let of_image = || Finish::new(scene, mesh(), textures).emission(emitter.primitive, v, w).into();
+        let radiance = emitter.radiance.unwrap_or_else(of_image);
         let density = narrow(f64::from(emitter.brightness) / total);
         Some(Chosen { radiance, at, normal: emitter.normal, density })
     }

@@ -123,8 +123,9 @@ impl Sources {
         let beams = Beams::of(&scene.lights, disc);
         let mut sources = Self { shining, beams, up, ..Self::default() };
         let has_lights = sources.shining.total() > 0.0 || sources.beams.total() > 0.0;
-        let day =
-            |[elevation, azimuth]: [f32; 2]| (Some(Sky::DAY), (elevation > 0.0).then(|| Sun::by_day(elevation, azimuth, up)));
+        let day = |[elevation, azimuth]: [f32; 2]| {
+            (Some(Sky::DAY), (elevation.sin() > 0.0).then(|| Sun::by_day(elevation, azimuth, up)))
+        };
         match surroundings {
             Surroundings::Usual if has_lights => {}
             Surroundings::Usual => (sources.sky, sources.sun) = day(Surroundings::SUN),
@@ -133,7 +134,8 @@ impl Sources {
                 sources.dome = Some(Dome::new(Arc::clone(image), *turn, *strength, cancel)?);
             }
         }
-        let area = geometry.space().scale().powi(2);
+        // Areas in the scaled space to those in the world.
+        let area = geometry.space().scale().powi(-2);
         let of_triangles = 2.0 * std::f64::consts::PI * area * sources.shining.total();
         let of_sun = sources.sun.map_or(0.0, |sun| f64::from(brightness(sun.irradiance())) * disc);
         let of_dome = sources.dome.as_ref().map_or(0.0, |dome| dome.power_per_area() * disc);

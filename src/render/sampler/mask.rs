@@ -47,8 +47,8 @@ impl Pattern {
 fn ranks() -> Vec<u16> {
     let mut pattern = Pattern { points: vec![false; CELLS], crowd: vec![0.0; CELLS] };
     for i in 0..FIRST as u32 {
-        // Anywhere: a linear congruence visits no cell twice.
-        pattern.set((super::random::hash(i + 1) as usize) % CELLS, true);
+        // Anywhere, and nowhere twice: a factor without divisors in common with the number of cells.
+        pattern.set((i as usize * 1597) % CELLS, true);
     }
     loop {
         // Points move from where they are crowded to where there are none, until that is the same place.

@@ -64,6 +64,11 @@ impl Texture {
         (self.width, self.height)
     }
 
+    /// What is stored, row by row.
+    pub(crate) fn texels(&self) -> &[u8] {
+        &self.texels
+    }
+
     /// Bytes of its texels.
     pub fn bytes(&self) -> u64 {
         self.texels.len() as u64

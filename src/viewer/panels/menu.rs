@@ -117,6 +117,8 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.error.is_some(), Command::Dismiss),
         (state.needing.is_some(), Command::CancelNeeds),
         (state.checks.checking.is_some(), Command::CancelCheck),
+        (state.errors.making.is_some(), Command::CancelReference),
+        (state.tradeoffs.running.is_some(), Command::CancelTradeoffs),
         // In another workspace nobody sees that it runs.
         (state.checks.running.is_some() && state.settings.workspace == Workspace::Check, Command::CancelLab),
     ];

@@ -60,7 +60,8 @@ impl State {
         match making.poll() {
             Outcome::Running => return,
             Outcome::Done(Ok(reference)) => {
-                self.errors.reference = Some(Arc::new(reference));
+                // What is measured against the one before is of no use.
+                (self.errors.reference, self.errors.erring) = (Some(Arc::new(reference)), None);
                 self.errors.curves.iter_mut().for_each(|live| live.errors.fill(None));
             }
             Outcome::Done(Err(_)) => {}
@@ -122,6 +123,7 @@ impl State {
         let shot = Arc::clone(&self.errors.curves[chosen.curve].shots[chosen.kept]);
         let reference = self.errors.reference.clone().filter(|_| difference);
         let (present, tone) = (Arc::clone(present), self.settings.tone);
-        self.errors.developing = workers::develop(&self.shared, shot, reference, present, tone).ok();
+        let size_px = self.errors.view.map_or(self.size_px, |view| view.size_px);
+        self.errors.developing = workers::develop(&self.shared, shot, reference, (present, size_px), tone).ok();
     }
 }
