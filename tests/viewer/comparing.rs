@@ -59,8 +59,7 @@ fn errors_fall_with_samples_and_are_measured_against_a_reference() {
     w.harness.get_by_role_and_label(Role::CheckBox, "Show as table").click();
     w.step();
     let before = w.state().picture.as_ref().expect("a picture").rgba.clone();
-    w.harness.get_all_by_role_and_label(Role::Button, "BVH").last().expect("a row").click();
-    w.step();
+    w.button("BVH, 4 spp");
     w.until("its picture", |s| s.is_held());
     let size = w.state().size_px;
     let held = w.state().on_screen().expect("it").clone();

@@ -183,7 +183,9 @@ fn table(ui: &mut Ui, state: &State, commands: &mut Commands) {
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                         marks::dot(ui, live.key.entry.family);
                         let chosen = errors.chosen.is_some_and(|c| (c.curve, c.point) == (curve, point));
-                        if ui.selectable_label(chosen, live.key.entry.short).on_hover_text("Show its picture.").clicked() {
+                        let named = format!("{}, {} spp", live.key.entry.short, live.shots[point].samples);
+                        let label = ui.selectable_label(chosen, live.key.entry.short).accessible_name(named);
+                        if label.on_hover_text("Show its picture.").clicked() {
                             let difference = errors.chosen.is_some_and(|c| c.difference);
                             commands.push(Command::Shot((!chosen).then_some((curve, point)), difference));
                         }
