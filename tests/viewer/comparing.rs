@@ -56,8 +56,7 @@ fn errors_fall_with_samples_and_are_measured_against_a_reference() {
     // Both structures are of the same samples: the same errors to the bit.
     assert!((0..3).all(|point| rmse(&w, 0, point) == rmse(&w, 1, point)));
 
-    w.harness.get_by_role_and_label(Role::CheckBox, "Show as table").click();
-    w.step();
+    w.click(Role::CheckBox, "Show as table");
     let before = w.state().picture.as_ref().expect("a picture").rgba.clone();
     w.button("BVH, 4 spp");
     w.until("its picture", |s| s.is_held());
@@ -69,8 +68,7 @@ fn errors_fall_with_samples_and_are_measured_against_a_reference() {
         w.harness.get_by_role(Role::Canvas).accesskit_node().description().is_some_and(|d| d.contains(what))
     };
     assert!(describes(&w, "picture of 4 spp"), "{:?}", w.harness.get_by_role(Role::Canvas).accesskit_node().description());
-    w.harness.get_by_role_and_label(Role::CheckBox, "Difference").click();
-    w.step();
+    w.click(Role::CheckBox, "Difference");
     w.until("the difference", |s| s.is_held());
     w.step();
     assert!(describes(&w, "difference from the reference of 4 spp") && w.says("Brightness less the reference's"));

@@ -1,5 +1,7 @@
 //! Logarithmic axes: what is drawn over them are logarithms to the base of ten.
 
+use std::ops::RangeInclusive;
+
 use egui_plot::{GridInput, GridMark, Legend, Plot};
 
 use crate::viewer::format;
@@ -16,8 +18,8 @@ pub fn log_log<'a>(id: &str, [x, y]: [&str; 2]) -> Plot<'a> {
         .y_axis_label(y)
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
-        .x_axis_formatter(|mark, _| power(mark))
-        .y_axis_formatter(|mark, _| power(mark))
+        .x_axis_formatter(power)
+        .y_axis_formatter(power)
         .label_formatter(|_| None)
 }
 
@@ -35,7 +37,8 @@ fn decades(input: GridInput) -> Vec<GridMark> {
     lines.collect()
 }
 
-/// Powers of ten are named, and nothing in between.
-fn power(mark: GridMark) -> String {
-    if mark.step_size < 1.0 { String::new() } else { format::number(10f64.powf(mark.value)) }
+/// Powers of ten are named where they are within the axis, and nothing in between.
+fn power(mark: GridMark, shown: &RangeInclusive<f64>) -> String {
+    let named = mark.step_size >= 1.0 && shown.contains(&mark.value);
+    if named { format::number(10f64.powf(mark.value)) } else { String::new() }
 }

@@ -1,6 +1,6 @@
 //! Beside the curves of errors: what the reference is, and the picture of the point that was clicked.
 
-use eframe::egui::Ui;
+use eframe::egui::{Label, Ui};
 
 use super::{Commands, empty, fact, heading};
 use crate::lab::Metric;
@@ -36,13 +36,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
     empty(ui, "Choose another structure to add its curve. Moving the camera begins anew.");
     heading(ui, "Measures");
+    empty(ui, "Of a value v and the reference's r, over all pixels and linear red, green and blue.");
     for metric in Metric::ALL.into_iter().filter(|metric| *metric != Metric::Flip) {
-        fact(
-            ui,
-            metric.label(),
-            metric.formula(),
-            "Of a value v and the reference's r, over all pixels and linear red, green and blue.",
-        );
+        ui.add(Label::new(format!("{}: {}", metric.label(), metric.formula())).wrap());
     }
 }
 

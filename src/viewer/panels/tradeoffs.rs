@@ -83,7 +83,7 @@ fn spots(state: &State) -> Vec<Spot> {
                 let (name, error) = (format!("{} {}", row.name, test.test.id()), trade.miss.of(test).max(NONE));
                 spots.push(Spot { family, name, marker, at: (test.ns, error) });
             }
-        } else if let Some(goodness) = trade.goodness.of(row) {
+        } else if let Some(goodness) = trade.goodness.of(row).filter(|_| family != Family::Brute) {
             let marker = marker_of(family);
             spots.push(Spot { family, name: row.name.clone(), marker, at: (row.build_secs, goodness) });
         }
@@ -122,10 +122,12 @@ pub fn show(ui: &mut Ui, state: &State) {
     let colors: Vec<Color32> = spots.iter().map(|spot| marks::color(ui, spot.family)).collect();
     let logs = |spot: &Spot| [spot.at.0.log10(), spot.at.1.log10()];
     let best = front(&spots.iter().map(|spot| spot.at).collect::<Vec<_>>());
-    if trade.plot == Plot::Intersection {
-        let help = "Circles are watertight, crosses fast, diamonds exact tests. Nothing wrong is drawn at 1.";
-        ui.label(RichText::new(help).small().color(palette.dim));
-    }
+    let help = if trade.plot == Plot::Intersection {
+        "Circles are watertight, crosses fast, diamonds exact tests. Nothing wrong is drawn at 1."
+    } else {
+        "Filled points are beaten by nobody at both. Brute force, far above all others, is not drawn."
+    };
+    ui.label(RichText::new(help).small().color(palette.dim));
     let id = if trade.plot == Plot::Intersection { "intersection" } else { "model" };
     let height = ui.available_height() - theme::GRID;
     log_log(id, axes).height(height).show(ui, |plot| {
