@@ -135,7 +135,14 @@ fn plot(ui: &mut Ui, state: &State, (id, of_secs, name): (&str, bool, &str), com
             let of: Vec<&Place> = places.iter().filter(|p| p.curve == curve).collect();
             let at = |of: &[&Place]| PlotPoints::from(of.iter().map(|p| p.at).collect::<Vec<_>>());
             let (name, color) = (live.key.entry.short, colors[curve]);
-            plot.line(Line::new(name, at(&of)).color(color).width(theme::CURVE));
+            // Members of a family have one colour.
+            let family = |live: &&Live| live.key.entry.family == errors.curves[curve].key.entry.family;
+            let style = match errors.curves[..curve].iter().filter(family).count() {
+                0 => LineStyle::Solid,
+                1 => LineStyle::dashed_loose(),
+                _ => LineStyle::dotted_dense(),
+            };
+            plot.line(Line::new(name, at(&of)).color(color).width(theme::CURVE).style(style));
             for hollow in [false, true] {
                 let some: Vec<&Place> = of.iter().copied().filter(|p| p.hollow == hollow).collect();
                 let points = Points::new(name, at(&some)).color(color).radius(theme::GRID).filled(!hollow);
