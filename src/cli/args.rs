@@ -78,6 +78,17 @@ pub struct SeedArgs {
     pub seed: u32,
 }
 
+/// What a path traced picture depends on besides model and camera.
+#[derive(Clone, Debug, clap::Args)]
+pub struct LightArgs {
+    #[command(flatten)]
+    pub seed: SeedArgs,
+    #[command(flatten)]
+    pub around: AroundArgs,
+    #[command(flatten)]
+    pub transport: TransportArgs,
+}
+
 /// What is around the scene, in mode path.
 #[derive(Clone, Debug, clap::Args)]
 pub struct AroundArgs {

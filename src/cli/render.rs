@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use image::ImageEncoder;
 
-use super::args::{AroundArgs, LookArgs, ModelArgs, SceneArgs, SeedArgs, Size, ToneArgs, TransportArgs, positive, seconds};
+use super::args::{LightArgs, LookArgs, ModelArgs, SceneArgs, Size, ToneArgs, positive, seconds};
 use super::bar;
 use super::context::Context;
 use super::failure::Failure;
@@ -51,11 +51,7 @@ pub struct Args {
     #[arg(long, default_value = "independent")]
     sampler: SamplerKind,
     #[command(flatten)]
-    seed: SeedArgs,
-    #[command(flatten)]
-    around: AroundArgs,
-    #[command(flatten)]
-    transport: TransportArgs,
+    light: LightArgs,
     #[command(flatten)]
     tone: ToneArgs,
     /// Columns and rows.
@@ -88,7 +84,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
     let looks = match args.mode {
-        Mode::Path => cx.looks(&model, Detail::Light)?.within(args.around.surroundings(&cx)?),
+        Mode::Path => cx.looks(&model, Detail::Light)?.within(args.light.around.surroundings(&cx)?),
         mode if mode.shows_looks() => cx.looks(&model, Detail::Colors)?,
         _ => Looks::default(),
     };
@@ -96,8 +92,8 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let times =
         [("open", phases(&model.phases)), ("build", format!("{}: {}", duration(built.build_secs), phases(&built.phases)))];
     let job = Job {
-        sampling: Sampling { kind: args.sampler, seed: args.seed.seed },
-        transport: args.transport.transport(),
+        sampling: Sampling { kind: args.sampler, seed: args.light.seed.seed },
+        transport: args.light.transport.transport(),
         ..Job::new(model.scene, built.accel, camera, args.mode, Arc::new(looks))
     };
     let size = (args.size.width, args.size.height);
@@ -132,7 +128,7 @@ impl Args {
             ("mode", self.mode.id().to_owned()),
             ("spp", still.film.samples().to_string()),
             ("sampler", self.sampler.id().to_owned()),
-            ("seed", self.seed.seed.to_string()),
+            ("seed", self.light.seed.seed.to_string()),
             ("seconds", still.secs.to_string()),
         ];
         notes.map(|(key, value)| (key.to_owned(), value)).into()
@@ -186,10 +182,9 @@ fn text(args: &Args, still: &Still, [open, build]: [(&'static str, String); 2], 
         lines
             .push(("noise", format!("{noise:.3e} estimated after {}; {share} of pixels in the last pass", duration(still.secs))));
     }
-    if let Some(most) = args.transport.clamp {
+    if let Some(most) = args.light.transport.clamp {
         let Work { clamped, lost, .. } = still.work;
-        let light: f64 = still.film.linear().iter().flatten().map(|x| f64::from(*x)).sum::<f64>() * f64::from(samples);
-        let share = percent(lost / (lost + light).max(f64::MIN_POSITIVE));
+        let share = percent(lost / (lost + still.film.light()).max(f64::MIN_POSITIVE));
         lines.push(("clamped", format!("{} contributions above {most}: {share} of the light is missing", count(clamped))));
     }
     if args.mode.is_scalar() {

@@ -140,6 +140,11 @@ impl Film {
         (n > 0).then(|| narrow(0.18f64.log2() - sum / f64::from(n)))
     }
 
+    /// All light of all samples: sums of red, green and blue.
+    pub fn light(&self) -> f64 {
+        self.sums.iter().flat_map(|sum| &sum[..3]).map(|x| f64::from(*x)).sum()
+    }
+
     /// Linear red, green and blue of each pixel over black.
     pub fn linear(&self) -> Vec<[f32; 3]> {
         self.means().map(|[r, g, b, _]| [r, g, b]).collect()

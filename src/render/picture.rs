@@ -55,8 +55,6 @@ pub struct Progress {
     pub step: u32,
     /// Seconds from the request to this picture.
     pub secs: f64,
-    /// The estimated noise, once there are two samples ([`super::Film::noise`]).
-    pub noise: Option<f64>,
     /// The exposure that would suit ([`super::Film::fitting_exposure`]), of path traced pictures.
     pub exposure: Option<f32>,
     /// The share of pixels that got a sample in this pass: the others cannot see the scene, or have converged.

@@ -339,7 +339,6 @@ impl<N: Fn()> Worker<N> {
         let progress = Progress {
             samples: film.samples(),
             share: film.share(),
-            noise: film.noise(),
             exposure: task.exposure,
             step,
             secs: task.start.elapsed().as_secs_f64(),

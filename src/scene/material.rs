@@ -32,9 +32,6 @@ pub struct Material {
     pub transmission: f32,
     /// The image whose values `transmission` is multiplied by.
     pub transmission_texture: Option<ValueTexture>,
-    /// How thick what is below the surface is, in units of the mesh; 0 for a thin wall, which has nothing below it
-    /// (KHR_materials_volume).
-    pub thickness: f32,
     /// The index of refraction, which says how much a dielectric mirrors; 1 for nothing.
     pub ior: f32,
     /// Linear radiance that it sends out from both sides.
@@ -93,7 +90,6 @@ impl Material {
         normal_texture: None,
         transmission: 0.0,
         transmission_texture: None,
-        thickness: 0.0,
         ior: 1.5,
         emission: [0.0; 3],
         emission_texture: None,

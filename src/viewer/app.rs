@@ -73,6 +73,7 @@ impl App {
         let shared = Shared::new(Pool::new("work", options.threads), budget, Arc::new(move || ctx.request_repaint()));
         let mut state = State::new(settings, shared, dialog, Graphics::of(cc.wgpu_render_state.as_ref()))?;
         state.first_camera = options.camera;
+        state.tradeoffs.plot = options.errors.unwrap_or_default();
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
         let layout = if options.is_scripted() { SCRIPTED } else { 0 };

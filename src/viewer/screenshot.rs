@@ -147,8 +147,7 @@ impl Screenshot {
             (Plot::Image, step) if step < BESIDE.len() => Some(Command::Structure(BESIDE[step])),
             (Plot::Image, step) if step == BESIDE.len() => Some(Command::MakeReference),
             (Plot::Image, _) => None,
-            (plot, 0) => Some(Command::ErrorPlot(plot)),
-            (_, 1) => Some(Command::MeasureTradeoffs),
+            (_, 0) => Some(Command::MeasureTradeoffs),
             _ => None,
         };
         *step += 1;

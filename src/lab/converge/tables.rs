@@ -51,7 +51,7 @@ pub struct BreakEven {
     pub quick: String,
     /// That of the one that traces faster.
     pub better: String,
-    /// Rays, of all kinds, after which the second is ahead, build and all; 0 if it is built as fast.
+    /// Rays, of all kinds, after which the second is ahead, build and all.
     pub rays: f64,
     /// The same in samples of every pixel.
     pub spp: f64,

@@ -240,6 +240,13 @@ mod tests {
             let of_sets = correlation(&mut first(0, 1), &mut first(0, 2));
             assert!(of_seeds.abs() < 0.04 && of_sets.abs() < 0.04, "{kind:?}: {of_seeds} {of_sets}");
         }
+        // Of neighbours too, but for blue noise, whose neighbours are to differ.
+        for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
+            let at = |x: u32, y: u32| Sampling { kind, seed: 0 }.of(x, y, 0).four(1)[0] - 0.5;
+            let pairs = (0..128 * 128).map(|i| (i % 128, i / 128));
+            let of_pixels = 12.0 / 16_384.0 * pairs.map(|(x, y)| at(x, y) * at(x + 1, y)).sum::<f32>();
+            assert!(of_pixels.abs() < 0.04, "{kind:?}: {of_pixels}");
+        }
         // Without a seed, pictures are as they always were.
         assert_eq!(Random::new(3, 4, 5).bits(6), Random::seeded([3, 4], 5, 0).bits(6));
         // Samples beyond the sequence's end go on.

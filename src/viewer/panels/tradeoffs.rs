@@ -1,7 +1,7 @@
 //! Quality against its cost: a point for each variant, or for each triangle test in it; those that no other beats at both are
 //! joined by a line.
 
-use eframe::egui::{Align, Button, Color32, ComboBox, Layout, ProgressBar, RichText, Ui};
+use eframe::egui::{Align, Button, Color32, ComboBox, Label, Layout, ProgressBar, RichText, Ui};
 use egui_plot::{Line, MarkerShape, PlotPoint, PlotPoints, Points, Text};
 
 use super::axes::log_log;
@@ -128,6 +128,12 @@ pub fn show(ui: &mut Ui, state: &State) {
         "Filled points are beaten by nobody at both. Brute force, far above all others, is not drawn."
     };
     ui.label(RichText::new(help).small().color(palette.dim));
+    let missing = trade.rows.iter().filter_map(|row| Some(format!("{}: {}", row.name, row.error.as_ref()?)));
+    let missing = missing.collect::<Vec<_>>().join(" ");
+    if !missing.is_empty() {
+        let label = Label::new(RichText::new(format!("Not there: {missing}")).small().color(palette.warn)).truncate();
+        ui.add(label).on_hover_text(missing);
+    }
     let id = if trade.plot == Plot::Intersection { "intersection" } else { "model" };
     let height = ui.available_height() - theme::GRID;
     log_log(id, axes).height(height).show(ui, |plot| {

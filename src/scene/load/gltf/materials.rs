@@ -30,7 +30,6 @@ fn material(root: &Root, json: &Json) -> Material {
     let strength = extensions.and_then(|e| e.emissive_strength.as_ref()).map_or(1.0, |e| e.emissive_strength.0);
     let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(Material::PLAIN.ior, |e| e.ior.0);
     let emission = json.emissive_factor.0.map(|x| if (x * strength).is_finite() { (x * strength).max(0.0) } else { 0.0 });
-    let thickness = extensions.and_then(|e| e.volume.as_ref()).map_or(0.0, |volume| volume.thickness_factor.0);
     let value = |texture: Option<TextureUse>, channel: Channel| texture.map(|texture| ValueTexture { texture, channel });
     let normal_scale = json.normal_texture.as_ref().map(|normal| normal.scale).filter(|scale| scale.is_finite());
     Material {
@@ -47,7 +46,6 @@ fn material(root: &Root, json: &Json) -> Material {
         normal_texture: maps.normal.map(|texture| NormalTexture { texture, scale: normal_scale.unwrap_or(1.0) }),
         transmission: unit(transmission),
         transmission_texture: value(maps.transmission, Channel::Red),
-        thickness: if thickness.is_finite() { thickness.max(0.0) } else { 0.0 },
         ior: if ior.is_finite() { ior.max(1.0) } else { Material::PLAIN.ior },
         // Where it shines is not known without the map: better nowhere than everywhere.
         emission: if maps.emission_left_out { [0.0; 3] } else { emission },

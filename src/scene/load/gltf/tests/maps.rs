@@ -27,14 +27,13 @@ fn each_map_has_its_channel_its_factor_and_its_place() {
             "KHR_materials_transmission": {
                 "transmissionFactor": 0.75, "transmissionTexture": {"index": 0, "extensions": transform(0.5)},
             },
-            "KHR_materials_volume": {"thicknessFactor": 2},
         },
     }]));
     let [metallic, roughness, transmission] =
         [material.metallic_texture, material.roughness_texture, material.transmission_texture].map(|map| map.expect("a map"));
     assert_eq!((metallic.channel, roughness.channel, transmission.channel), (Channel::Blue, Channel::Green, Channel::Red));
     assert_eq!((material.metallic, material.roughness, material.transmission), (0.5, 0.25, 0.75));
-    assert_eq!((material.emission, material.thickness), ([4.0, 2.0, 0.0], 2.0));
+    assert_eq!(material.emission, [4.0, 2.0, 0.0]);
     let (normal, emission) = (material.normal_texture.expect("a map"), material.emission_texture.expect("a map"));
     assert_eq!(normal.scale, 0.5);
     let all = [metallic.texture, roughness.texture, normal.texture, emission, transmission.texture];

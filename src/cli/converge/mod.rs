@@ -1,5 +1,7 @@
 //! `boxwood converge`: image error against run time.
 
+mod text;
+
 use std::fs;
 use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -7,18 +9,17 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::args::{AroundArgs, LookArgs, ModelArgs, SceneArgs, SeedArgs, Size, TransportArgs, seconds};
+use super::args::{LightArgs, LookArgs, ModelArgs, SceneArgs, Size, seconds};
 use super::bar;
 use super::context::Context;
 use super::failure::Failure;
 use super::output::{OutFile, print, print_json, warn};
 use super::plot::{Curve as Plotted, Dot, Panel, log_log, png_of};
 use super::structures::{BuildArgs, Many, each_once};
-use super::table::{Table, facts};
 use crate::lab::converge::{
     self, ConvergeCx, ConvergeError, ConvergeOptions, Convergence, Curve, REFERENCE_FACTOR, Reference, Rendered, Runner,
 };
-use crate::lab::format::{MISSING, count, duration, number, or_missing, percent, rate};
+use crate::lab::format::count;
 use crate::lab::{MachineFacts, Metric, SceneFacts};
 use crate::render::sampler::SamplerKind;
 use crate::render::{Job, LinearPicture, Mode, Transport};
@@ -55,11 +56,7 @@ pub struct Args {
     #[arg(long)]
     adaptive: bool,
     #[command(flatten)]
-    seed: SeedArgs,
-    #[command(flatten)]
-    around: AroundArgs,
-    #[command(flatten)]
-    transport: TransportArgs,
+    light: LightArgs,
     #[command(flatten)]
     look: LookArgs,
     #[command(flatten)]
@@ -95,14 +92,14 @@ pub struct Outcome {
 
 pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let Many(entries) = &args.structures;
-    if Reference::has_samples_of(args.seed.seed) {
+    if Reference::has_samples_of(args.light.seed.seed) {
         return Err(Failure::Input("that seed is the reference's, which has to be independent: use another".to_owned()));
     }
     let params = args.build.params(entries)?;
     let folder = Folder::at(&args.output)?;
     let cx = Context::new(args.model.machine, cancel);
     let model = cx.load_with_instances(&args.model.model, args.scene)?;
-    let looks = Arc::new(cx.looks(&model, Detail::Light)?.within(args.around.surroundings(&cx)?));
+    let looks = Arc::new(cx.looks(&model, Detail::Light)?.within(args.light.around.surroundings(&cx)?));
     let (mut runners, mut missing) = (Vec::new(), Vec::new());
     for (entry, params) in entries.iter().zip(&params) {
         match cx.build(entry, &model, args.build.test, params) {
@@ -119,12 +116,12 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     };
     let camera = CameraSpec::or_first(args.look.camera.as_ref(), &model.scene, &model.geometry, args.size.aspect());
     let job = Job {
-        transport: args.transport.transport(),
+        transport: args.light.transport.transport(),
         ..Job::new(Arc::clone(&model.scene), Arc::clone(&first.accel), camera, Mode::Path, looks)
     };
     let outcome = measure(&job, &runners, &args.options(), (&folder, model.facts(), missing), &cx)?;
     write(&outcome, &folder, &cx.cancel)?;
-    if args.json { print_json(&outcome) } else { print(&text(args, &outcome)) }
+    if args.json { print_json(&outcome) } else { print(&text::of(&args.output, &outcome)) }
 }
 
 /// Renders, makes the reference or takes the folder's, and measures.
@@ -164,7 +161,7 @@ impl Args {
             secs: self.seconds,
             runs: self.runs,
             samplers: each_once(self.samplers.clone()),
-            seed: self.seed.seed,
+            seed: self.light.seed.seed,
             adaptive: self.adaptive,
         }
     }
@@ -290,125 +287,4 @@ pub fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
         ("error-samples", panel("error against samples", "samples a pixel", false)),
         ("error-seconds", panel("error against seconds", "seconds from the end of the build", true)),
     ]
-}
-
-fn text(args: &Args, outcome: &Outcome) -> String {
-    let Convergence { reference, curves, coincide, agreements, tables } = &outcome.convergence;
-    let machine = &outcome.machine;
-    let [width, height] = outcome.size;
-    let sure = format!("{} spp, noise {:.2e}", count(reference.spp.into()), reference.noise);
-    let mut lines = vec![
-        ("model", format!("{}: {} triangles, {width}x{height}", outcome.scene.path, count(outcome.scene.triangles))),
-        ("machine", format!("{}, {} cores, {} threads", machine.cpu, machine.cores, machine.threads)),
-        ("reference", format!("{sure}; points below 4 times that are hollow, and left out of slopes")),
-        ("samples", format!("seed {}, {} runs in turns", outcome.seed, outcome.runs)),
-    ];
-    if outcome.adaptive {
-        lines.push(("adaptive", "converged pixels got no more samples: every error is that of a biased picture".to_owned()));
-    }
-    if let Some(most) = outcome.transport.clamp {
-        lines.push(("clamped", format!("light over two and more surfaces to {most} a sample, in the reference too")));
-    }
-    let mut out = facts(&lines);
-    let mut table = Table::new(&[
-        "structure",
-        "sampler",
-        "build",
-        "spp",
-        "seconds",
-        "min",
-        "max",
-        "RMSE",
-        "relMSE",
-        "MAE",
-        "SMAPE",
-        "FLIP",
-        "slope",
-        "95 %",
-        "1/(MSE s)",
-    ]);
-    for curve in curves {
-        let Some(last) = curve.points.last() else { continue };
-        let slope = curve.slope.map_or([MISSING.to_owned(), MISSING.to_owned()], |slope| {
-            [format!("{:.3}", slope.value), format!("{:.3} to {:.3}", slope.low, slope.high)]
-        });
-        let flip = or_missing(last.errors.flip, |flip| format!("{flip:.3}"));
-        let errors = [last.errors.rmse, last.errors.relmse, last.errors.mae, last.errors.smape];
-        let secs = [last.secs, last.secs_min, last.secs_max].map(duration);
-        let head = [curve.structure.clone(), curve.sampler.id().to_owned(), duration(curve.build_secs), last.spp.to_string()];
-        let efficiency = curve.efficiency.map_or(MISSING.to_owned(), number);
-        let cells =
-            head.into_iter().chain(secs).chain(errors.map(|e| format!("{e:.3e}"))).chain([flip]).chain(slope).chain([efficiency]);
-        table.row(cells.collect());
-    }
-    out += &format!("\n{}", table.render());
-    let mut speed = Table::new(&["structure", "sampler", "rays/s", "rays/sample", "tracing", "shading", "the rest"]);
-    for curve in curves {
-        let [tracing, shading, rest] = curve.shares.map(percent);
-        let pixels = f64::from(width) * f64::from(height);
-        let rays = number(curve.rays_per_sample / pixels);
-        speed.row(vec![
-            curve.structure.clone(),
-            curve.sampler.id().to_owned(),
-            rate(curve.rays_per_sec),
-            rays,
-            tracing,
-            shading,
-            rest,
-        ]);
-    }
-    out += &format!("\n{}", speed.render());
-    let mut same = Table::new(&["structure", "same as the first", "pixels", "RMSE by", "rays", "near ties", "wrong"]);
-    for a in agreements {
-        let verdict = if a.identical {
-            "to the bit"
-        } else if a.coincides {
-            "but for near ties"
-        } else {
-            "NO"
-        };
-        same.row(vec![
-            a.structure.clone(),
-            verdict.to_owned(),
-            count(a.pixels),
-            percent(a.rmse_difference),
-            count(a.rays.rays),
-            count(a.rays.near_ties),
-            count(a.rays.wrong),
-        ]);
-    }
-    let verdict = if *coincide { "coincide" } else { "DO NOT coincide" };
-    out += &format!("\nAgainst samples all curves {verdict}.\n{}", same.render());
-    let mut equal = Table::new(&["structure", "sampler", "at", "RMSE", "down to", "takes", "with the build"]);
-    for curve in curves {
-        let at_time = tables.equal_time.iter().find(|row| (&row.structure, row.sampler) == (&curve.structure, curve.sampler));
-        let at_error = tables.equal_error.iter().find(|row| (&row.structure, row.sampler) == (&curve.structure, curve.sampler));
-        let error = |rmse: f64| format!("{rmse:.3e}");
-        equal.row(vec![
-            curve.structure.clone(),
-            curve.sampler.id().to_owned(),
-            or_missing(at_time, |row| duration(row.secs)),
-            or_missing(at_time, |row| error(row.rmse)),
-            or_missing(at_error, |row| error(row.rmse)),
-            or_missing(at_error, |row| duration(row.secs)),
-            or_missing(at_error, |row| duration(row.secs_with_build)),
-        ]);
-    }
-    out += &format!("\nAt the same time, and at the same error:\n{}", equal.render());
-    if !tables.break_even.is_empty() {
-        let mut pays = Table::new(&["better", "than", "after rays", "samples", "seconds"]);
-        for b in &tables.break_even {
-            pays.row(vec![b.better.clone(), b.quick.clone(), number(b.rays), number(b.spp), duration(b.secs)]);
-        }
-        out += &format!("\nFrom when on a slower build pays, build and all:\n{}", pays.render());
-    }
-    out += "\n";
-    let flip = curves.iter().flat_map(|c| &c.points).any(|p| p.errors.flip.is_some());
-    for metric in Metric::ALL.into_iter().filter(|metric| flip || *metric != Metric::Flip) {
-        out += &format!("{}: {}\n", metric.label(), metric.formula());
-    }
-    out + &format!(
-        "Over all pixels and red, green and blue of linear light, black where nothing is. Plots and data: {}\n",
-        args.output.display()
-    )
 }
