@@ -1,6 +1,7 @@
 //! Everything that measures: which rays are traced, how they are timed so that the comparison is
 //! fair, what is counted, and the rows that tables, JSON and reports are made of.
 
+mod boxed;
 mod building;
 pub mod converge;
 mod costs;

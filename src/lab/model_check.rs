@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::mesh_check::{MeshCheck, check};
 use super::rays::{RayKind, RaySet};
-use super::stability::{Reference, SceneRow};
+use super::stability::{Reference, SceneRow, answers_of};
 use crate::accel::{Accel, BuildCx, BuildError};
 use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
@@ -92,7 +92,8 @@ pub fn check_model(
     cx.progress.start("compare", structures.len() as u64);
     let mut rows = Vec::with_capacity(structures.len());
     for Checked { id, test, accel } in structures {
-        rows.push(reference.compare((id, *test), accel.as_ref(), &rays, secs, &cx.pool, &cx.cancel)?);
+        let answers = answers_of(accel.as_ref(), &cx.cancel);
+        rows.push(reference.compare((id, *test), &answers, &rays, secs, &cx.pool, &cx.cancel)?);
         cx.progress.advance(1);
     }
     Ok(ModelCheck { mesh, structures: rows, rays })

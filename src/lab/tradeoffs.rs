@@ -1,6 +1,6 @@
 //! What quality costs: for every builder and structure how good it is against how long it takes to build, and for every
-//! triangle test in it how often and how far it errs against how long a ray takes. Nobody is best at both: those that no
-//! other beats at both are the front (Pareto).
+//! triangle test in it, and each test of boxes, how often and how far it errs against how long a ray takes. Nobody is best at
+//! both: those that no other beats at both are the front (Pareto).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,6 +8,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::boxed::Boxed;
 use super::building::build_timed;
 use super::costs::{FitOptions, fit_costs};
 use super::measure::{Contestant, MeasureOptions, measure};
@@ -16,7 +17,7 @@ use super::model_check::CheckError;
 use super::quality::{Quality, QualityOptions};
 use super::rays::{RayKind, RaySet};
 use super::report::CostRow;
-use super::stability::Reference;
+use super::stability::{Answers, BoxTest, Reference, answers_of};
 use crate::accel::params::{Kind, ParamValues};
 use crate::accel::registry::{Entry, Family};
 use crate::accel::stats::{SahWeights, Stats};
@@ -82,6 +83,9 @@ pub struct TradeoffRow {
     pub ns: BTreeMap<RayKind, f64>,
     /// By triangle test, on rays that are hard for them.
     pub tests: Vec<TestRow>,
+    /// By test of boxes, in a plain tree of the boxes of `bvh` with the watertight test; of no other structure.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub boxes: Vec<BoxTestRow>,
     /// Why there is no more, in words for the user.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -92,6 +96,24 @@ pub struct TradeoffRow {
 pub struct TestRow {
     /// The test.
     pub test: TestKind,
+    /// How it errs.
+    #[serde(flatten)]
+    pub erring: Erring,
+}
+
+/// The same of a test of boxes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BoxTestRow {
+    /// The test.
+    pub test: BoxTest,
+    /// How it errs.
+    #[serde(flatten)]
+    pub erring: Erring,
+}
+
+/// How often and how far answers to hard rays are off, and what they take.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Erring {
     /// Nanoseconds of a thread for a hard ray.
     pub ns: f64,
     /// Hard rays that were judged.
@@ -181,6 +203,14 @@ impl Tradeoffs {
         let Some((_, first)) = built.first() else { return Ok(row) };
         self.model(&mut row, first, SahWeights::of(&variant.params), cx)?;
         self.tests(&mut row, &built, cx)?;
+        // Of instances there is no one tree.
+        if variant.name == "bvh" && first.levels().is_none() {
+            match Boxed::of(first.as_ref(), &cx.budget, &cx.cancel) {
+                Ok(tree) => row.boxes = self.boxes(&tree, cx)?,
+                Err(BuildError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(error) => row.error = Some(error.to_string()),
+            }
+        }
         Ok(row)
     }
 
@@ -211,27 +241,44 @@ impl Tradeoffs {
         let contestants: Vec<Contestant> = built.iter().map(contestant).collect();
         let timings = measure(&contestants, &self.hard, &TIMES, pool, cancel, &Progress::new())?;
         for ((test, accel), timing) in built.iter().zip(timings) {
-            let judged =
-                self.reference.compare((&row.structure, *test), accel.as_ref(), &self.hard.rays, JUDGED, pool, cancel)?;
-            let per_million = |n: usize| 1e6 * n as f64 / judged.rays.max(1) as f64;
-            row.tests.push(TestRow {
-                test: *test,
-                ns: ns_per_ray(&timing, pool),
-                rays: judged.rays,
-                wrong_per_million: per_million(judged.wrong),
-                rounded_per_million: per_million(judged.rounded),
-                p999_ulps: self.p999_ulps(accel.as_ref(), judged.rays, pool, cancel)?,
-            });
+            let answers = answers_of(accel.as_ref(), cancel);
+            let erring = self.erring(*test, &answers, ns_per_ray(&timing, pool), pool, cancel)?;
+            row.tests.push(TestRow { test: *test, erring });
         }
         Ok(())
     }
 
+    /// How tests of boxes err, in turns.
+    fn boxes(&self, tree: &Boxed, cx: &BuildCx) -> Result<Vec<BoxTestRow>, Cancelled> {
+        let (pool, cancel) = (&cx.pool, &cx.cancel);
+        let secs = tree.times(&self.hard.rays, &TIMES, pool, cancel)?;
+        let row = |(test, secs): (BoxTest, f64)| {
+            let answers = |rays: &[Ray], hits: &mut [Option<Hit>]| tree.trace(test, rays, hits, cancel);
+            let ns = secs * 1e9 * pool.threads() as f64 / self.hard.rays.len().max(1) as f64;
+            Ok(BoxTestRow { test, erring: self.erring(TestKind::Watertight, &answers, ns, pool, cancel)? })
+        };
+        BoxTest::ALL.into_iter().zip(secs).map(row).collect()
+    }
+
+    /// What answers that are given with a triangle test are off by.
+    fn erring(&self, test: TestKind, answers: Answers<'_>, ns: f64, pool: &Pool, cancel: &Cancel) -> Result<Erring, Cancelled> {
+        let judged = self.reference.compare(("", test), answers, &self.hard.rays, JUDGED, pool, cancel)?;
+        let per_million = |n: usize| 1e6 * n as f64 / judged.rays.max(1) as f64;
+        Ok(Erring {
+            ns,
+            rays: judged.rays,
+            wrong_per_million: per_million(judged.wrong),
+            rounded_per_million: per_million(judged.rounded),
+            p999_ulps: self.p999_ulps(answers, judged.rays, pool)?,
+        })
+    }
+
     /// Over hits on the triangle that is hit exactly, of about so many rays: a slow structure was not asked more.
-    fn p999_ulps(&self, accel: &dyn Accel, rays: usize, pool: &Pool, cancel: &Cancel) -> Result<f64, Cancelled> {
+    fn p999_ulps(&self, answers: Answers<'_>, rays: usize, pool: &Pool) -> Result<f64, Cancelled> {
         let every = self.hard.rays.len().div_ceil(rays.max(1)).max(1);
         let some: Vec<Ray> = self.hard.rays.iter().step_by(every).copied().collect();
         let mut hits = vec![None; some.len()];
-        let trace = |(rays, hits): (&[Ray], &mut [Option<Hit>])| accel.trace(rays, Mode::Closest, hits, cancel).map(|_| ());
+        let trace = |(rays, hits): (&[Ray], &mut [Option<Hit>])| answers(rays, hits);
         pool.run(|| some.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK)).try_for_each(trace))?;
         let exact = self.exact.iter().step_by(every);
         let both = hits.iter().zip(exact).filter_map(|(a, b)| a.zip(*b));

@@ -4,7 +4,7 @@ use std::sync::mpsc::Receiver;
 
 use super::workers::Trading;
 use crate::lab::RayKind;
-use crate::lab::tradeoffs::{TestRow, TradeoffRow};
+use crate::lab::tradeoffs::{Erring, TradeoffRow};
 
 /// Everything of it.
 #[derive(Default)]
@@ -27,7 +27,7 @@ pub enum Plot {
     /// The picture's error against time.
     #[default]
     Image,
-    /// Errors of triangle tests against nanoseconds.
+    /// Errors of tests against nanoseconds.
     Intersection,
     /// How good structures are against the time of their build.
     Model,
@@ -59,7 +59,7 @@ impl Plot {
     pub const fn help(self) -> &'static str {
         match self {
             Self::Image => "The error of the path traced picture against samples and seconds.",
-            Self::Intersection => "How triangle tests err on hard rays of this view, against the time of a ray.",
+            Self::Intersection => "How tests of triangles and boxes err on hard rays of this view, against the time of a ray.",
             Self::Model => "How good each structure is, against the time of its build; and how far predictions are off.",
         }
     }
@@ -74,7 +74,7 @@ impl std::str::FromStr for Plot {
     }
 }
 
-/// How a triangle test errs.
+/// How a test of triangles or boxes errs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Miss {
     /// Wrong answers.
@@ -99,12 +99,12 @@ impl Miss {
         }
     }
 
-    /// What it is of a row.
-    pub const fn of(self, row: &TestRow) -> f64 {
+    /// What it is of a test.
+    pub const fn of(self, erring: &Erring) -> f64 {
         match self {
-            Self::Wrong => row.wrong_per_million,
-            Self::Rounded => row.rounded_per_million,
-            Self::Ulps => row.p999_ulps,
+            Self::Wrong => erring.wrong_per_million,
+            Self::Rounded => erring.rounded_per_million,
+            Self::Ulps => erring.p999_ulps,
         }
     }
 }

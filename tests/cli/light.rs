@@ -122,7 +122,7 @@ fn a_report_is_one_page_of_everything() {
     ] {
         assert!(page.contains(&format!(">{section}</h2>")), "{section}");
     }
-    assert_eq!((page.matches("<svg").count(), page.matches("data:image/png").count()), (6, 3));
+    assert_eq!((page.matches("<svg").count(), page.matches("data:image/png").count()), (7, 3));
     // Nothing is fetched: the only address is the name of what SVG is.
     assert_eq!(page.matches("http").count(), page.matches("http://www.w3.org/2000/svg").count());
     assert!(page.contains("Würfel.ply") && !page.contains(">NaN"));
@@ -130,6 +130,8 @@ fn a_report_is_one_page_of_everything() {
     assert_eq!((&report["version"], &report["quick"]), (&1.into(), &true.into()));
     assert_eq!(report["structures"].as_array().map(Vec::len), Some(2));
     assert_eq!(report["tradeoffs"].as_array().map(Vec::len), Some(2), "no builders where it is to be quick");
+    let boxes = &report["tradeoffs"][0]["boxes"];
+    assert_eq!((&boxes[3]["test"], &boxes[3]["wrong_per_million"]), (&"two-origins".into(), &0.0.into()));
     assert_eq!(report["check"]["structures"][0]["wrong"], 0);
     assert!(report["commands"][0].as_str().is_some_and(|line| line.contains("report") && line.contains("--quick")));
     assert_eq!(fs::read_to_string(folder.at("report/structures.csv")).expect("there").lines().count(), 3);

@@ -5,7 +5,7 @@ use super::{Everything, Shown, said_of};
 use crate::cli::converge;
 use crate::cli::plot::{Curve, Panel, log_log};
 use crate::lab::format::{bytes, count, duration, number, or_missing, percent, rate, spread};
-use crate::lab::tradeoffs::front;
+use crate::lab::tradeoffs::{Erring, front};
 use crate::lab::{Metric, RayKind, StructureRow};
 
 const KINDS: [RayKind; 3] = [RayKind::Primary, RayKind::Shadow, RayKind::Diffuse];
@@ -202,17 +202,22 @@ fn pareto(title: &str, axes: [&'static str; 2], points: Vec<(String, String, (f6
 
 fn intersection_error(page: &mut Page, all: &Everything) -> Result<(), String> {
     page.section("Intersection error");
-    page.text("Rays to the corners and the middles of edges of what is seen, judged by exact arithmetic. Wrong answers are those that no rounding explains, or rays that slipped through a closed surface; rounded ones meet another triangle than they do exactly, or none. t is compared with that of the exact test.");
-    let points = |of: fn(&crate::lab::tradeoffs::TestRow) -> f64| {
-        let rows = all.tradeoffs.iter().flat_map(|row| row.tests.iter().map(move |test| (row, test)));
-        rows.map(|(row, test)| {
+    page.text("Rays to the corners and the middles of edges of what is seen, judged by exact arithmetic. Wrong answers are those that no rounding explains, or rays that slipped through a closed surface; rounded ones meet another triangle than they do exactly, or none. t is compared with that of the exact test. Tests of boxes are those of a plain tree of the boxes of bvh, with the watertight test of triangles.");
+    let mut tests: Vec<(&str, String, &str, &Erring)> = Vec::new();
+    for row in &all.tradeoffs {
+        tests.extend(row.tests.iter().map(|test| (&row.structure[..], row.name.clone(), test.test.id(), &test.erring)));
+        tests.extend(row.boxes.iter().map(|test| (&row.structure[..], "boxes".to_owned(), test.test.id(), &test.erring)));
+    }
+    let points = |of: fn(&Erring) -> f64| {
+        let point = |(structure, name, test, erring): &(&str, String, &str, &Erring)| {
             // What is nothing has no logarithm.
-            let error = of(test);
+            let error = of(erring);
             let drawn = if error.is_nan() { error } else { error.max(0.1) };
-            (row.structure.clone(), format!("{} {}", row.name, test.test.id()), (test.ns, drawn))
-        })
-        .collect::<Vec<_>>()
+            ((*structure).to_owned(), format!("{name} {test}"), (erring.ns, drawn))
+        };
+        tests.iter().map(point).collect::<Vec<_>>()
     };
+    let wrong = pareto("Wrong answers", ["ns a hard ray", "in a million (0 is drawn at 0.1)"], points(|t| t.wrong_per_million));
     let rounded = pareto(
         "Answers that rounding decides",
         ["ns a hard ray", "in a million (0 is drawn at 0.1)"],
@@ -220,25 +225,16 @@ fn intersection_error(page: &mut Page, all: &Everything) -> Result<(), String> {
     );
     let ulps =
         pareto("Error of t", ["ns a hard ray", "ulps, one hit in a thousand (0 is drawn at 0.1)"], points(|t| t.p999_ulps));
-    for panel in [rounded, ulps] {
+    for panel in [wrong, rounded, ulps] {
         let caption = format!("{}: those joined are beaten by nobody at both.", panel.title);
         page.plot(&log_log(&[panel]).map_err(|error| error.to_string())?, &caption);
     }
-    let mut rows = Vec::new();
-    for row in &all.tradeoffs {
-        for test in &row.tests {
-            rows.push(vec![
-                row.name.clone(),
-                test.test.id().to_owned(),
-                count(test.rays as u64),
-                number(test.ns),
-                number(test.wrong_per_million),
-                number(test.rounded_per_million),
-                number(test.p999_ulps),
-            ]);
-        }
-    }
-    page.table(&["structure", "test", "rays", "ns/ray", "wrong per million", "rounded per million", "ulps of t"], &rows);
+    let cells = |(_, name, test, erring): &(&str, String, &str, &Erring)| {
+        let numbers = [erring.ns, erring.wrong_per_million, erring.rounded_per_million, erring.p999_ulps].map(number);
+        [vec![name.clone(), (*test).to_owned(), count(erring.rays as u64)], numbers.into()].concat()
+    };
+    let headers = ["structure", "test", "rays", "ns/ray", "wrong per million", "rounded per million", "ulps of t"];
+    page.table(&headers, &tests.iter().map(cells).collect::<Vec<_>>());
     Ok(())
 }
 

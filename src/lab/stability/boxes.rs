@@ -144,8 +144,8 @@ fn boxes(ground: &Ground, cx: &BuildCx) -> Result<Vec<Aabb>, Reason> {
     Ok(boxes.into_iter().step_by(step).filter(|b| !b.is_empty()).collect())
 }
 
-/// A ray made ready for all of the tests.
-struct Asker {
+/// A ray of the scaled space, made ready for all of the tests.
+pub struct Asker {
     origin: [f32; 3],
     inverse: [f32; 3],
     interval: [f32; 2],
@@ -153,7 +153,9 @@ struct Asker {
 }
 
 impl Asker {
-    fn new(ray: &Ray, bounds: &Aabb) -> Self {
+    /// For a ray and a scene inside `bounds`.
+    #[inline(always)]
+    pub fn new(ray: &Ray, bounds: &Aabb) -> Self {
         Self {
             origin: ray.origin.to_array(),
             inverse: ray.dir.to_array().map(|d| 1.0 / d),
@@ -164,13 +166,19 @@ impl Asker {
 
     #[inline(always)]
     fn ask(&self, test: BoxTest, b: &Aabb) -> bool {
+        self.entry(test, b, self.interval[1]).is_some()
+    }
+
+    /// Where the ray enters a box that it meets before `end`, as a test has it.
+    #[inline(always)]
+    pub fn entry(&self, test: BoxTest, b: &Aabb, end: f32) -> Option<f32> {
         match test {
-            BoxTest::Plain => self.slabs(b, 1.0),
-            BoxTest::Ize => self.slabs(b, 1.0 + 2.0 * f32::EPSILON),
-            BoxTest::Pbrt => self.slabs(b, PBRT),
+            BoxTest::Plain => self.slabs(b, 1.0, end),
+            BoxTest::Ize => self.slabs(b, 1.0 + 2.0 * f32::EPSILON, end),
+            BoxTest::Pbrt => self.slabs(b, PBRT, end),
             BoxTest::TwoOrigins => {
                 let (entry, exit) = self.slabs.interval(b);
-                entry <= exit && entry <= self.interval[1] && self.interval[0] <= exit
+                (entry <= exit && entry <= end && self.interval[0] <= exit).then_some(entry)
             }
         }
     }
@@ -178,9 +186,9 @@ impl Asker {
     /// Three slabs, the far t enlarged. Where the origin lies in a plane and the direction too, 0 times infinity is no number,
     /// and the slab is left out: the comparisons are written so that they fail then.
     #[inline(always)]
-    fn slabs(&self, b: &Aabb, enlarged: f32) -> bool {
+    fn slabs(&self, b: &Aabb, enlarged: f32, end: f32) -> Option<f32> {
         let (low, high) = (b.min.to_array(), b.max.to_array());
-        let [mut entry, mut exit] = self.interval;
+        let (mut entry, mut exit) = (self.interval[0], end);
         for k in 0..3 {
             let (a, b) = ((low[k] - self.origin[k]) * self.inverse[k], (high[k] - self.origin[k]) * self.inverse[k]);
             let (near, far) = if self.inverse[k].is_sign_negative() { (b, a) } else { (a, b) };
@@ -188,7 +196,7 @@ impl Asker {
             entry = if near > entry { near } else { entry };
             exit = if far < exit { far } else { exit };
         }
-        entry <= exit
+        (entry <= exit).then_some(entry)
     }
 }
 

@@ -22,10 +22,10 @@ mod shrink;
 mod ulps;
 mod visits;
 
-pub use boxes::{BoxRow, BoxTest};
+pub use boxes::{Asker, BoxRow, BoxTest};
 pub use judge::Wrong;
 pub use matrix::{CaseRow, Options, check_case};
-pub use on_scene::{DifferingRay, Reference, SceneRow};
+pub use on_scene::{Answers, DifferingRay, Reference, SceneRow, answers_of};
 pub use price::{TestPrice, prices};
 pub use row::{Row, Verdict, WrongRay};
 pub use shrink::{check, shrink};

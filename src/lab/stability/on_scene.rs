@@ -48,6 +48,17 @@ pub struct DifferingRay {
     pub t: f32,
 }
 
+/// What traces rays for their closest hits.
+pub type Answers<'a> = &'a (dyn Fn(&[Ray], &mut [Option<Hit>]) -> Result<(), Cancelled> + Sync);
+
+/// A structure's.
+pub fn answers_of<'a>(
+    accel: &'a dyn Accel,
+    cancel: &'a Cancel,
+) -> impl Fn(&[Ray], &mut [Option<Hit>]) -> Result<(), Cancelled> + Sync + 'a {
+    |rays, hits| accel.trace(rays, Mode::Closest, hits, cancel).map(|_| ())
+}
+
 /// Rays compared at a time; a structure that is none takes a tenth of a second for them on a million triangles.
 const CHUNK: usize = 64;
 /// Differing rays kept of a row.
@@ -73,15 +84,15 @@ impl Reference {
         Ok(Self { accel: Arc::from(entry.build(geometry, TestKind::Exact, &params, cx)?), closed })
     }
 
-    /// Traces the rays through a structure that was built over the same geometry, as many as it takes in about `secs`
-    /// seconds, and judges it.
+    /// Judges what a structure that was built over the same geometry, or anything else, answers to rays: to as many as it
+    /// takes in about `secs` seconds.
     ///
     /// # Errors
     /// [`Cancelled`] within 100 ms of the request.
     pub fn compare(
         &self,
         (id, test): (&str, TestKind),
-        accel: &dyn Accel,
+        answers: Answers<'_>,
         rays: &[Ray],
         secs: f64,
         pool: &Pool,
@@ -99,7 +110,7 @@ impl Reference {
                     return Ok(differing);
                 }
                 let which: Vec<usize> = (part..rays.len()).step_by(parts).collect();
-                differing.extend(self.part(test, accel, rays, &which, cancel)?);
+                differing.extend(self.part(test, answers, rays, &which, cancel)?);
                 traced.fetch_add(which.len(), Ordering::Relaxed);
                 // Others wait for the same threads.
                 rayon::yield_now();
@@ -117,16 +128,16 @@ impl Reference {
     fn part(
         &self,
         test: TestKind,
-        accel: &dyn Accel,
+        answers: Answers<'_>,
         rays: &[Ray],
         which: &[usize],
         cancel: &Cancel,
     ) -> Result<Vec<DifferingRay>, Cancelled> {
         let rays: Vec<Ray> = which.iter().map(|i| rays[*i]).collect();
         let (mut hits, mut exact) = (vec![None; rays.len()], vec![None; rays.len()]);
-        accel.trace(&rays, Mode::Closest, &mut hits, cancel)?;
+        answers(&rays, &mut hits)?;
         self.accel.trace(&rays, Mode::Closest, &mut exact, cancel)?;
-        let geometry = accel.geometry();
+        let geometry = self.accel.geometry();
         let mut differing = Vec::new();
         for (i, ray) in rays.iter().enumerate() {
             let (hit, exact): (Option<Hit>, Option<Hit>) = (hits[i], exact[i]);
@@ -197,9 +208,8 @@ mod tests {
         let entry = registry::find("kdtree").expect("registered");
         let accel = entry.build(&geometry, test, &entry.defaults(), &cx).expect("builds");
         let reference = Reference::build(&geometry, closed, &cx).expect("builds");
-        reference
-            .compare(("kdtree", test), accel.as_ref(), &trial.rays, f64::INFINITY, &cx.pool, &cx.cancel)
-            .expect("not cancelled")
+        let answers = answers_of(accel.as_ref(), &cx.cancel);
+        reference.compare(("kdtree", test), &answers, &trial.rays, f64::INFINITY, &cx.pool, &cx.cancel).expect("not cancelled")
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Quality against its cost: a point for each variant, or for each triangle test in it; those that no other beats at both are
+//! Quality against its cost: a point for each variant, or for each test of triangles or boxes in it; those that no other beats at both are
 //! joined by a line.
 
 use eframe::egui::{Align, Button, Color32, ComboBox, Label, Layout, ProgressBar, RichText, Ui};
@@ -80,8 +80,12 @@ fn spots(state: &State) -> Vec<Spot> {
                     TestKind::Exact => MarkerShape::Diamond,
                     _ => MarkerShape::Circle,
                 };
-                let (name, error) = (format!("{} {}", row.name, test.test.id()), trade.miss.of(test).max(NONE));
-                spots.push(Spot { family, name, marker, at: (test.ns, error) });
+                let (name, error) = (format!("{} {}", row.name, test.test.id()), trade.miss.of(&test.erring).max(NONE));
+                spots.push(Spot { family, name, marker, at: (test.erring.ns, error) });
+            }
+            for test in &row.boxes {
+                let (name, error) = (format!("boxes {}", test.test.id()), trade.miss.of(&test.erring).max(NONE));
+                spots.push(Spot { family, name, marker: MarkerShape::Square, at: (test.erring.ns, error) });
             }
         } else if let Some(goodness) = trade.goodness.of(row).filter(|_| family != Family::Brute) {
             let marker = marker_of(family);
@@ -123,7 +127,8 @@ pub fn show(ui: &mut Ui, state: &State) {
     let logs = |spot: &Spot| [spot.at.0.log10(), spot.at.1.log10()];
     let best = front(&spots.iter().map(|spot| spot.at).collect::<Vec<_>>());
     let help = if trade.plot == Plot::Intersection {
-        "Circles are watertight, crosses fast, diamonds exact tests. Nothing wrong is drawn at 1."
+        "Circles are watertight, crosses fast, diamonds exact tests of triangles. Squares are tests of boxes, in a plain tree of the \
+         boxes of bvh with the watertight test. Nothing wrong is drawn at 1."
     } else {
         "Filled points are beaten by nobody at both. Brute force, far above all others, is not drawn."
     };
