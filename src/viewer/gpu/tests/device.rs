@@ -1,17 +1,23 @@
 //! A device without a window, and pixels read back from it.
 
 use std::io::Write;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use eframe::wgpu;
 
 use crate::viewer::gpu::targets::{COLOR, texture};
 use crate::viewer::gpu::{DrawList, Renderer};
 
+/// Some drivers wait for ever where several threads of a program make devices at the same time: one test after another has one.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// A renderer on a device of its own.
 pub(super) struct Headless {
     pub(super) device: wgpu::Device,
     queue: wgpu::Queue,
     pub(super) renderer: Renderer,
+    /// Dropped last.
+    _turn: MutexGuard<'static, ()>,
 }
 
 /// Says that a check was left out, and what it takes. Straight to standard error: what tests print is
@@ -25,6 +31,7 @@ impl Headless {
     /// `None`, said aloud, where there is no adapter. The limits are those that eframe asks for at
     /// least, so that what passes here also runs there.
     pub(super) fn new(test: &str) -> Option<Self> {
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let adapter = match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
             Ok(adapter) => adapter,
@@ -37,7 +44,7 @@ impl Headless {
         let description = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&description)).expect("a device");
         let renderer = Renderer::new(&device, COLOR);
-        Some(Self { device, queue, renderer })
+        Some(Self { device, queue, renderer, _turn: turn })
     }
 
     /// Prepares one frame of viewport 0. Whether it was drawn anew.
