@@ -189,6 +189,12 @@ pub trait Cells: Send + Sync {
     /// How the cells relate.
     fn layout(&self) -> Layout;
 
+    /// The same of the cells of an instance (see [`CellId`]): structures below an upper level may be of another kind.
+    fn layout_of(&self, instance: u32) -> Layout {
+        let _ = instance;
+        self.layout()
+    }
+
     /// What the builder decided by itself, in words for the user; each is one sentence.
     fn remarks(&self) -> Vec<String> {
         Vec::new()

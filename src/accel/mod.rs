@@ -18,6 +18,7 @@ mod instanced;
 mod kdtree;
 mod loose;
 mod octree;
+pub mod outline;
 pub mod params;
 pub mod probe;
 pub mod registry;

@@ -32,7 +32,7 @@ pub struct Args {
     /// The structure to trace through.
     #[arg(long, value_name = "ID", default_value = "bvh")]
     structure: One,
-    /// What is shown: shaded, path, ao, normals, depth, nodes or prims.
+    /// What is shown: shaded, path, ao, normals, depth, nodes, leaves or prims.
     #[arg(long, default_value = "shaded")]
     mode: Mode,
     /// Samples a pixel; at most, where --seconds or --until-error say when it is done [default: 16, or 65536 with those].
@@ -191,6 +191,7 @@ fn text(args: &Args, still: &Still, [open, build]: [(&'static str, String); 2], 
         let range = auto_range(&still.film, args.mode);
         let unit = match args.mode {
             Mode::Nodes => " nodes visited by a ray",
+            Mode::Leaves => " leaves visited by a ray",
             Mode::Prims => " triangles tested by a ray",
             _ => "",
         };

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use super::args::{LookArgs, MachineArgs, Size};
 use super::failure::Failure;
 use super::structures::One;
+use crate::accel::outline::Rank;
+use crate::geometry::Axis;
 use crate::render::Mode;
 
 /// How the window begins. What is not said comes from the last time.
@@ -17,7 +19,7 @@ pub struct Args {
     /// The structure to show.
     #[arg(long, value_name = "ID")]
     pub structure: Option<One>,
-    /// What is shown: shaded, path, ao, normals, depth, nodes or prims.
+    /// What is shown: shaded, path, ao, normals, depth, nodes, leaves or prims.
     #[arg(long)]
     pub mode: Option<Mode>,
     /// Samples a pixel after which to rest.
@@ -53,6 +55,19 @@ pub struct Args {
     /// Begin in the Compare workspace with that plot: image, intersection or model; with --screenshot, fill it first.
     #[arg(long, value_name = "PLOT", value_parser = ["image", "intersection", "model"], conflicts_with_all = ["measure", "check"])]
     pub errors: Option<String>,
+    /// Begin in the Structure workspace; with --screenshot, select that cell first: dearest, deepest, fullest or overlap.
+    #[arg(long, value_name = "CELL", conflicts_with_all = ["measure", "check", "errors"])]
+    pub select: Option<Rank>,
+    /// With that, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
+    #[arg(long, value_name = "AXIS,PLACE", value_parser = plane, requires = "select")]
+    pub try_plane: Option<(Axis, f64)>,
+    /// Begin in the Ray workspace; with --screenshot, follow the ray of that place first: -1,-1 is the lower left corner of the
+    /// view, 1,1 the upper right.
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with_all = ["select", "measure", "check", "errors"])]
+    pub follow: Option<[f32; 2]>,
+    /// With that, structures whose steps stand beside, at most three, between commas.
+    #[arg(long, value_name = "IDS", value_delimiter = ',', requires = "follow")]
+    pub beside: Vec<One>,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
@@ -84,6 +99,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         measure: args.measure,
         check: args.check,
         errors: args.errors.and_then(|plot| plot.parse().ok()),
+        select: args.select,
+        try_plane: args.try_plane,
+        follow: args.follow,
+        beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),
         pace: args.pace,
         endure: args.endure,
         screenshot: args.screenshot,
@@ -102,4 +121,21 @@ pub fn run(_: Args) -> Result<(), Failure> {
     Err(Failure::Other(anyhow::anyhow!(
         "this build has no window; the commands scenes, stats, compare, render, rays and trace work. See 'boxwood --help'"
     )))
+}
+
+/// `x,0.4`: a plane across an axis, and where.
+fn plane(text: &str) -> Result<(Axis, f64), String> {
+    let parsed = text.split_once(',').and_then(|(axis, place)| {
+        let axis = Axis::ALL.into_iter().find(|known| known.name() == axis.trim())?;
+        let place = place.trim().parse::<f64>().ok().filter(|place| (0.0..=1.0).contains(place))?;
+        Some((axis, place))
+    });
+    parsed.ok_or_else(|| "a plane is an axis and a place from 0 to 1, as in x,0.4".to_owned())
+}
+
+/// `0.1,-0.2`: a place in the view.
+fn place(text: &str) -> Result<[f32; 2], String> {
+    let parsed = text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    let inside = parsed.filter(|place: &[f32; 2]| place.iter().all(|x| (-1.0..=1.0).contains(x)));
+    inside.ok_or_else(|| "a place is two numbers from -1 to 1, as in 0.1,-0.2".to_owned())
 }

@@ -89,6 +89,17 @@ pub fn percent(share: f64) -> String {
     format!("{shown}{THIN}%")
 }
 
+/// A share of the whole to three digits: `12.3 %`.
+pub fn share(share: f64) -> String {
+    if share.is_finite() { format!("{}{THIN}%", number(share * 100.0)) } else { MISSING.to_owned() }
+}
+
+/// A sentence from its first letter on: `Mesh 3 …`.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
 /// An error: `3.2e-4`.
 pub fn error(x: f64) -> String {
     if !x.is_finite() {

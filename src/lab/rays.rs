@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::lines::line;
-use crate::accel::{Hit, Mode};
+use crate::accel::{Accel, Hit, Mode};
 use crate::geometry::Ray;
 use crate::render::Job;
 use crate::render::sampler::{Random, cosine_direction};
@@ -201,6 +201,22 @@ impl RaySet {
         let bands: Result<Vec<Vec<Ray>>, Cancelled> = pool.run(|| bands.into_par_iter().map(band).collect());
         Ok(Self { kind: RayKind::Lines, mode: RayKind::Lines.mode(), rays: bands?.concat() })
     }
+}
+
+/// The ray of a kind that leaves what a world ray meets first: towards the light beside the camera, or in a random direction
+/// about the normal; a primary one is the ray itself. `None` if it meets nothing.
+///
+/// # Errors
+/// [`Cancelled`] if asked to stop.
+pub fn leaving(kind: RayKind, accel: &dyn Accel, camera: &Camera, ray: &Ray, cancel: &Cancel) -> Result<Option<Ray>, Cancelled> {
+    if kind == RayKind::Primary {
+        return Ok(Some(*ray));
+    }
+    let mut hit = [None];
+    accel.trace(std::slice::from_ref(ray), Mode::Closest, &mut hit, cancel)?;
+    let geometry = accel.geometry();
+    let leave = |hit: &Hit| second(kind, &Point::of(geometry, ray, hit), geometry, light(camera), &Random::new(0, 0, 0));
+    Ok(hit[0].as_ref().map(leave))
 }
 
 /// The ray that leaves a primary hit.

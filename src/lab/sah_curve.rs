@@ -4,12 +4,15 @@
 
 use std::ops::ControlFlow;
 
+use super::division::{Alternative, Division, Sorted, alternatives, cost_of};
 use crate::accel::cell::{Cell, Descend, Layout, walk_below};
+use crate::accel::params::{ParamValues, Value};
 use crate::accel::stats::SahWeights;
 use crate::accel::{Accel, Split};
-use crate::geometry::{Aabb, Axis};
+use crate::geometry::{Aabb, Axis, Clipped};
 use crate::scene::{Geometry, PrimRef};
 use crate::task::{Cancel, Cancelled};
+use glam::Vec3;
 
 /// A candidate: where it crosses the node, from 0 to 1 along its axis, and what it would cost.
 pub type Candidate = (f64, f64);
@@ -19,12 +22,30 @@ pub type Candidate = (f64, f64);
 pub struct SahCurves {
     /// Candidates on each axis, by place; thinned out to what a plot can show, the cheapest kept.
     pub axes: [Vec<Candidate>; 3],
+    /// The planes that a builder with buckets looks at, on each axis.
+    pub buckets: [Vec<Candidate>; 3],
     /// The cost of not dividing.
     pub leaf: f64,
     /// What the structure's own division costs; none for a leaf.
     pub chosen: Option<Chosen>,
+    /// What other rules would have chosen.
+    pub others: Vec<Alternative>,
     /// Triangles below the node.
     pub triangles: usize,
+    /// What is weighed, by axis.
+    sorted: [Sorted; 3],
+}
+
+impl SahCurves {
+    /// The division by any plane across an axis, at a place from 0 to 1.
+    pub fn at(&self, axis: Axis, place: f64) -> Division {
+        self.sorted[axis.index()].at(place.clamp(0.0, 1.0))
+    }
+
+    /// Where a place along an axis is in the space of the node.
+    pub fn position(&self, axis: Axis, place: f64) -> f32 {
+        self.sorted[axis.index()].position(place)
+    }
 }
 
 /// The structure's own division.
@@ -40,31 +61,74 @@ pub struct Chosen {
 const MOST: usize = 2_000_000;
 /// Points of a curve.
 const POINTS: usize = 256;
+/// Candidates between two looks at whether to stop.
+const PER_CHECK: usize = 1 << 12;
+/// Nodes with more children are lists rather than divisions.
+const MOST_CHILDREN: usize = 1 << 12;
+/// Buckets where the builder has none.
+const BINS: u32 = 16;
 
-/// Works the curves out; `None` for nodes without area, with too many triangles, or with fewer than
-/// two.
+/// Works the curves out, in the weights that the structure was built with; `None` for nodes without area, with too many
+/// triangles, or with fewer than two.
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
-pub fn of_node(accel: &dyn Accel, node: &Cell, weights: SahWeights, cancel: &Cancel) -> Result<Option<SahCurves>, Cancelled> {
+pub fn of_node(accel: &dyn Accel, node: &Cell, params: &ParamValues, cancel: &Cancel) -> Result<Option<SahCurves>, Cancelled> {
+    let weights = SahWeights::of(params);
     let bounds = *node.shape.bounds();
-    let partition = matches!(accel.layout(), Layout::Partition);
+    let layout = accel.layout_of(node.id.instance);
+    let partition = layout == Layout::Partition;
+    // The upper level holds instances, not triangles.
+    if accel.levels().is_some() && node.id.instance == 0 {
+        return Ok(None);
+    }
     let Some(prims) = below(accel, node, cancel)? else { return Ok(None) };
     if prims.len() < 2 || bounds.area() <= 0.0 {
         return Ok(None);
     }
     let geometry = accel.geometry_of(node.id.instance);
-    let clip = |b: Aabb| if partition { b.intersection(bounds) } else { b };
-    let boxes: Vec<Aabb> = prims.iter().map(|p| clip(Aabb::of_triangle(&geometry.corners(*p)))).collect();
-    let mut axes = [const { Vec::new() }; 3];
-    for (axis, curve) in Axis::ALL.into_iter().zip(&mut axes) {
+    // Where triangles are cut only the part in the cell counts, as builders have it.
+    let cut = partition || layout == Layout::SplitHierarchy;
+    let of = |corners: [Vec3; 3]| if cut { Clipped::new(&corners, &bounds).bounds() } else { Aabb::of_triangle(&corners) };
+    let boxes: Vec<Aabb> = prims.iter().map(|p| of(geometry.corners(*p))).filter(|b| !b.is_empty()).collect();
+    let sort = |axis| {
         cancel.check()?;
-        let node = Node { bounds, boxes: &boxes, axis, weights };
-        *curve = thinned(if partition { node.planes() } else { node.centres() });
+        Ok(if partition {
+            Sorted::by_faces(bounds, &boxes, axis, (weights, bonus(params)))
+        } else {
+            Sorted::by_centres(bounds, &boxes, axis, weights)
+        })
+    };
+    let [x, y, z] = Axis::ALL.map(sort);
+    let sorted = [x?, y?, z?];
+    let bins =
+        params.iter().find(|(param, _)| param.id == "bins").and_then(|(_, v)| if let Value::Int(n) = v { Some(n) } else { None });
+    let bins = bins.unwrap_or(BINS);
+    let candidate = |division: &Division| (division.plane.1, division.cost);
+    let mut axes = [const { Vec::new() }; 3];
+    let mut exact: Option<Division> = None;
+    for (sorted, curve) in sorted.iter().zip(&mut axes) {
+        cancel.check()?;
+        let cheaper = |division: &Division| {
+            if exact.is_none_or(|best| division.cost < best.cost) {
+                exact = Some(*division);
+            }
+        };
+        let looked = |at: usize| if at.is_multiple_of(PER_CHECK) { cancel.check() } else { Ok(()) };
+        let one = |(at, division): (usize, Division)| looked(at).map(|()| candidate(&division));
+        *curve = thinned(sorted.candidates().inspect(cheaper).enumerate().map(one).collect::<Result<_, _>>()?);
     }
-    let chosen = chosen(accel, node, weights, cancel)?;
+    let buckets = [0, 1, 2].map(|k| sorted[k].buckets(bins).iter().map(candidate).collect());
+    let others = alternatives(&sorted, &boxes, (exact, bins), cancel)?;
+    let chosen = chosen(accel, node, &sorted, (weights, if partition { bonus(params) } else { 0.0 }), cancel)?;
     let leaf = weights.c_isect * boxes.len() as f64;
-    Ok(Some(SahCurves { axes, leaf, chosen, triangles: boxes.len() }))
+    Ok(Some(SahCurves { axes, buckets, leaf, chosen, others, triangles: boxes.len(), sorted }))
+}
+
+/// The share of the cost that a k-d tree forgives where a plane cuts off nothing but emptiness.
+fn bonus(params: &ParamValues) -> f64 {
+    let bonus = params.iter().find(|(param, _)| param.id == "empty_bonus");
+    bonus.map_or(0.0, |(_, value)| if let Value::Float(bonus) = value { bonus } else { 0.0 })
 }
 
 /// All triangles below a node, each once; `None` if there are too many.
@@ -82,79 +146,20 @@ fn below(accel: &dyn Accel, node: &Cell, cancel: &Cancel) -> Result<Option<Vec<P
     Ok((prims.len() <= MOST).then_some(prims))
 }
 
-/// A node and the boxes in it, along one axis.
-struct Node<'a> {
-    bounds: Aabb,
-    boxes: &'a [Aabb],
-    axis: Axis,
-    weights: SahWeights,
-}
-
-impl Node<'_> {
-    fn cost(&self, children: f64) -> f64 {
-        self.weights.c_trav + self.weights.c_isect * children / self.bounds.area()
-    }
-
-    fn place(&self, x: f32) -> f64 {
-        let k = self.axis.index();
-        let (min, size) = (f64::from(self.bounds.min[k]), f64::from(self.bounds.size()[k]));
-        if size > 0.0 { (f64::from(x) - min) / size } else { 0.0 }
-    }
-
-    /// A hierarchy's candidates: between every two neighbouring centres.
-    fn centres(&self) -> Vec<Candidate> {
-        let k = self.axis.index();
-        let mut order: Vec<&Aabb> = self.boxes.iter().collect();
-        order.sort_unstable_by(|a, b| a.centre_twice()[k].total_cmp(&b.centre_twice()[k]));
-        let mut right = vec![0.0; order.len()];
-        let mut side = Aabb::EMPTY;
-        for (i, b) in order.iter().enumerate().rev() {
-            side = side.union(**b);
-            right[i] = side.area() * (order.len() - i) as f64;
-        }
-        let mut left = Aabb::EMPTY;
-        let candidate = |(i, b): (usize, &&Aabb)| {
-            left = left.union(**b);
-            let place = self.place(0.5 * (b.centre()[k] + order[i + 1].centre()[k]));
-            (place, self.cost(left.area() * (i + 1) as f64 + right[i + 1]))
-        };
-        order.iter().enumerate().take(order.len() - 1).map(candidate).collect()
-    }
-
-    /// A partition's candidates: every face of every box inside the cell.
-    fn planes(&self) -> Vec<Candidate> {
-        let k = self.axis.index();
-        let sorted = |of: fn(&Aabb) -> glam::Vec3| {
-            let mut ends: Vec<f32> = self.boxes.iter().map(|b| of(b)[k]).collect();
-            ends.sort_unstable_by(f32::total_cmp);
-            ends
-        };
-        let (starts, ends) = (sorted(|b| b.min), sorted(|b| b.max));
-        let mut planes: Vec<f32> = starts.iter().chain(&ends).copied().collect();
-        planes.sort_unstable_by(f32::total_cmp);
-        planes.dedup();
-        planes.retain(|x| self.bounds.min[k] < *x && *x < self.bounds.max[k]);
-        let candidate = |pos: f32| {
-            // One that lies in the plane counts below.
-            let flat = starts.partition_point(|s| *s <= pos) - starts.partition_point(|s| *s < pos);
-            let touching = ends.partition_point(|e| *e <= pos) - ends.partition_point(|e| *e < pos);
-            let below = starts.partition_point(|s| *s < pos) + flat.min(touching);
-            let above = ends.len() - ends.partition_point(|e| *e <= pos);
-            let (low, high) = self.bounds.split(self.axis, pos);
-            (self.place(pos), self.cost(low.area() * below as f64 + high.area() * above as f64))
-        };
-        planes.into_iter().map(candidate).collect()
-    }
-}
-
 /// What the children that there are cost.
-fn chosen(accel: &dyn Accel, node: &Cell, weights: SahWeights, cancel: &Cancel) -> Result<Option<Chosen>, Cancelled> {
+fn chosen(
+    accel: &dyn Accel,
+    node: &Cell,
+    sorted: &[Sorted; 3],
+    (weights, bonus): (SahWeights, f64),
+    cancel: &Cancel,
+) -> Result<Option<Chosen>, Cancelled> {
     let mut children = Vec::new();
     accel.children(node, &mut |child| {
         children.push(child);
-        ControlFlow::Continue(())
+        if children.len() > MOST_CHILDREN { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    if children.is_empty() {
+    if children.is_empty() || children.len() > MOST_CHILDREN {
         return Ok(None);
     }
     let mut sum = 0.0;
@@ -164,8 +169,8 @@ fn chosen(accel: &dyn Accel, node: &Cell, weights: SahWeights, cancel: &Cancel) 
         sum += child.shape.area() * prims.len() as f64;
         sides.push(prims);
     }
-    let cost = weights.c_trav + weights.c_isect * sum / node.shape.area();
-    let bounds = node.shape.bounds();
+    let forgiven = if sides.iter().any(Vec::is_empty) && matches!(node.split, Some(Split::Axis { .. })) { bonus } else { 0.0 };
+    let cost = cost_of(weights, sum / node.shape.area(), forgiven);
     let plane = match (node.split, &sides[..]) {
         (Some(Split::Axis { axis, pos }), _) => Some((axis, pos)),
         (_, [left, right]) => {
@@ -173,10 +178,7 @@ fn chosen(accel: &dyn Accel, node: &Cell, weights: SahWeights, cancel: &Cancel) 
         }
         _ => None,
     };
-    let at = |(axis, pos): (Axis, f32)| {
-        let node = Node { bounds: *bounds, boxes: &[], axis, weights };
-        (axis, node.place(pos))
-    };
+    let at = |(axis, pos): (Axis, f32)| (axis, sorted[axis.index()].place(pos));
     Ok(Some(Chosen { plane: plane.map(at), cost }))
 }
 

@@ -17,13 +17,16 @@ pub enum Mode {
     Path,
     /// Nodes visited by the camera ray.
     Nodes,
+    /// Leaves visited by the camera ray.
+    Leaves,
     /// Primitives tested by the camera ray.
     Prims,
 }
 
 impl Mode {
     /// All of them, in the order of menus.
-    pub const ALL: [Self; 7] = [Self::Shaded, Self::Path, Self::Ao, Self::Normals, Self::Depth, Self::Nodes, Self::Prims];
+    pub const ALL: [Self; 8] =
+        [Self::Shaded, Self::Path, Self::Ao, Self::Normals, Self::Depth, Self::Nodes, Self::Leaves, Self::Prims];
 
     /// The name used on the command line and in files.
     pub const fn id(self) -> &'static str {
@@ -34,6 +37,7 @@ impl Mode {
             Self::Ao => "ao",
             Self::Path => "path",
             Self::Nodes => "nodes",
+            Self::Leaves => "leaves",
             Self::Prims => "prims",
         }
     }
@@ -47,6 +51,7 @@ impl Mode {
             Self::Ao => "Ambient occlusion",
             Self::Path => "Path traced",
             Self::Nodes => "Nodes visited",
+            Self::Leaves => "Leaves visited",
             Self::Prims => "Primitives tested",
         }
     }
@@ -60,13 +65,14 @@ impl Mode {
             Self::Path => "Light from the model's lamps, or from a sky where it has none, followed from surface to surface.",
             Self::Ao => "How much of the sky each point sees: one random ray a sample.",
             Self::Nodes => "How many nodes or cells each camera ray visits in the structure.",
+            Self::Leaves => "How many leaves, which hold triangles, each camera ray visits.",
             Self::Prims => "How many triangles each camera ray is tested against.",
         }
     }
 
     /// Whether pixels are amounts that a range turns into colours, rather than colours.
     pub const fn is_scalar(self) -> bool {
-        matches!(self, Self::Depth | Self::Nodes | Self::Prims)
+        matches!(self, Self::Depth | Self::Nodes | Self::Leaves | Self::Prims)
     }
 
     /// Rays that a pixel takes for a sample, about: what a pass takes is foreseen by it.
@@ -80,7 +86,7 @@ impl Mode {
 
     /// Whether the traversal is watched.
     pub const fn is_heat(self) -> bool {
-        matches!(self, Self::Nodes | Self::Prims)
+        matches!(self, Self::Nodes | Self::Leaves | Self::Prims)
     }
 }
 

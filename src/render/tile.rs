@@ -198,7 +198,11 @@ impl Job {
         for ((ray, hit), sample) in rays.iter().zip(hits).zip(samples) {
             let mut counts = Counts::default();
             *hit = self.accel.trace_watched(ray, accel::Mode::Closest, &mut counts, cancel)?;
-            let amount = if self.mode == Mode::Nodes { counts.nodes } else { counts.prims };
+            let amount = match self.mode {
+                Mode::Nodes => counts.nodes,
+                Mode::Leaves => counts.leaves,
+                _ => counts.prims,
+            };
             // A ray that does nothing at all is background.
             *sample = [amount as f32, 0.0, 0.0, f32::from(u8::from(hit.is_some() || amount > 0))];
         }

@@ -93,7 +93,8 @@ impl App {
             ThemeChoice::Light => egui::ThemePreference::Light,
             ThemeChoice::Dark => egui::ThemePreference::Dark,
         });
-        ctx.set_zoom_factor(self.state.settings.scale);
+        let presented = if self.state.presenting { theme::PRESENTED } else { 1.0 };
+        ctx.set_zoom_factor(self.state.settings.scale * presented);
     }
 
     fn carry_out(&mut self, ctx: &Context) {
@@ -136,20 +137,31 @@ impl App {
                 panels::statistics::show(ui, state, commands);
                 panels::selection::show(ui, state, commands);
             }
+            Workspace::Structure => panels::node::show(ui, state, commands),
+            Workspace::Ray => panels::ray::show(ui, state, commands),
             Workspace::Compare => panels::error_side::show(ui, state, commands),
             Workspace::Check => panels::check::show(ui, state, commands),
         };
         let narrow = ui.available_width() < theme::FOLD_BELOW;
         let id = |name: &str| egui::Id::unique((name, self.layout));
-        Panel::left(id("left")).default_size(theme::LEFT_PANEL).resizable(true).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                panels::scene::show(ui, state, commands);
-                ui.separator();
-                panels::structure::show(ui, state, commands);
-                ui.separator();
-                panels::overlay::show(ui, state, commands);
+        if workspace == Workspace::Structure {
+            let tree = Panel::left(id("tree")).default_size(theme::TREE_PANEL).resizable(true);
+            tree.show(ui, |ui| {
+                // The tree takes what the settings below it leave.
+                Panel::bottom(id("below the tree")).frame(Frame::NONE).show(ui, |ui| panels::overlay::show(ui, state, commands));
+                CentralPanel::no_frame().show(ui, |ui| panels::tree::show(ui, state, commands));
             });
-        });
+        } else {
+            Panel::left(id("left")).default_size(theme::LEFT_PANEL).resizable(true).show(ui, |ui| {
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    panels::scene::show(ui, state, commands);
+                    ui.separator();
+                    panels::structure::show(ui, state, commands);
+                    ui.separator();
+                    panels::overlay::show(ui, state, commands);
+                });
+            });
+        }
         if !narrow {
             Panel::right(id("right")).default_size(theme::RIGHT_PANEL).resizable(true).show(ui, |ui| {
                 ScrollArea::vertical().auto_shrink(false).show(ui, |ui| beside(ui, commands));
@@ -157,6 +169,8 @@ impl App {
         } else {
             let (sign, name) = match workspace {
                 Workspace::View => ("Σ", "Statistics"),
+                Workspace::Structure => ("#", "Selected cell"),
+                Workspace::Ray => ("»", "Ray"),
                 Workspace::Compare => ("±", "Errors"),
                 Workspace::Check => ("?", "Findings"),
             };
@@ -173,19 +187,19 @@ impl App {
     }
 
     fn centre(&mut self, ui: &mut Ui) {
-        let (below, height) = match self.state.settings.workspace {
-            Workspace::View => ("timings", theme::BOTTOM_PANEL),
-            Workspace::Compare => ("errors", theme::ERROR_PANEL),
-            Workspace::Check => ("matrix", theme::MATRIX_PANEL),
+        let below: Option<(&str, f32, Below)> = match self.state.settings.workspace {
+            Workspace::View => Some(("timings", theme::BOTTOM_PANEL, panels::timings::show)),
+            Workspace::Structure => None,
+            Workspace::Ray => Some(("steps", theme::STEPS_PANEL, panels::steps::show)),
+            Workspace::Compare => Some(("errors", theme::ERROR_PANEL, panels::errors::show)),
+            Workspace::Check => Some(("matrix", theme::MATRIX_PANEL, panels::stability::show)),
         };
-        let id = self.panel(below);
+        let below = below.filter(|_| !self.state.presenting).map(|(name, height, show)| (self.panel(name), height, show));
         let (state, commands) = (&self.state, &mut self.commands);
         let mut size_px = state.size_px;
-        Panel::bottom(id).default_size(height).resizable(true).show(ui, |ui| match state.settings.workspace {
-            Workspace::View => panels::timings::show(ui, state, commands),
-            Workspace::Compare => panels::errors::show(ui, state, commands),
-            Workspace::Check => panels::stability::show(ui, state, commands),
-        });
+        if let Some((id, height, show)) = below {
+            Panel::bottom(id).default_size(height).resizable(true).show(ui, |ui| show(ui, state, commands));
+        }
         CentralPanel::no_frame().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             let bar =
@@ -200,6 +214,9 @@ impl App {
         self.state.size_px = size_px;
     }
 }
+
+/// Draws a panel below the view.
+type Below = fn(&mut Ui, &State, &mut Commands);
 
 /// Whether this is the second pass over a frame, with the same input: what the hands did to the camera
 /// in the first is to be seen in this frame, not in the next.
@@ -242,6 +259,9 @@ impl eframe::App for App {
         if let Some(screenshot) = self.screenshot.as_mut().filter(|_| !is_repeated(ctx)) {
             screenshot.advance(ctx, &self.state, &mut self.pace, &mut self.commands);
         }
+        if let Some(due) = self.state.play_on() {
+            ctx.request_repaint_after(due);
+        }
         // Progress bars move; everything else wakes the window itself.
         let state = &self.state;
         let measured = state.is_measuring() || state.is_checking();
@@ -263,10 +283,14 @@ impl eframe::App for App {
         Panel::bottom(self.panel("status")).exact_size(theme::ROW).show(ui, |ui| {
             panels::status::show(ui, &self.state, ui_secs, &mut self.commands);
         });
-        self.sides(ui);
+        if !self.state.presenting {
+            self.sides(ui);
+        }
         self.centre(ui);
+        panels::terms::show(ui, &self.state, &mut self.commands);
         panels::help::show(ui, &self.state, &mut self.commands);
         panels::path::show(ui, &self.state, &mut self.commands);
+        panels::palette::show(ui, &self.state, &mut self.commands);
         if is_repeated(ui.ctx()) {
             // The same hands were seen in the first pass.
             self.commands.clear();

@@ -66,8 +66,10 @@ pub enum MarkKind {
     Wrong,
     /// Answered as rounding may have it.
     Rounded,
-    /// One of a case's rays, as an example.
+    /// One of a case's rays, as an example, or the one that is followed.
     Plain,
+    /// How far that is played.
+    Here,
 }
 
 /// Rays of a case that are drawn where none is wrong.

@@ -6,7 +6,9 @@ use super::model::Instances;
 use super::settings::{Navigation, OverlaySettings, ThemeChoice, Workspace};
 use super::tradeoffs::{Goodness, Miss, Plot};
 use crate::accel::params::ParamValues;
+use crate::geometry::Axis;
 use crate::geometry::tri::TestKind;
+use crate::lab::RayKind;
 use crate::render::sampler::SamplerKind;
 use crate::render::{Mode, Range, Tone};
 use crate::scene::Camera;
@@ -51,6 +53,40 @@ pub enum Command {
     Pick(Vec2),
     /// Select another of the cells that hold what was clicked, by depth.
     SelectLevel(usize),
+    /// Select a cell by its row in the tree.
+    SelectRow(u32),
+    /// Show the children of a row, or hide all that is below it.
+    OpenRow(u32, bool),
+    /// Show everything below a row.
+    OpenBelow(u32),
+    /// Try a plane in the selected node: across which axis, and where from 0 to 1.
+    TryPlane(Option<(Axis, f64)>),
+    /// Look why rays of this view are slow.
+    FindCauses,
+    /// Stop that.
+    CancelCauses,
+    /// Show the cell where that is seen, by its row.
+    ShowCause(u32),
+    /// Follow the ray of the pixel, or one that leaves what it meets.
+    RayKind(RayKind),
+    /// Follow a ray that was typed.
+    RayText(String),
+    /// Stop following a ray.
+    CancelFollow,
+    /// Show a structure's steps beside the shown one's, or hide them.
+    Beside(&'static str, bool),
+    /// Go to a step of a column of steps.
+    Step(usize, usize),
+    /// Play the steps, or stop.
+    Play(bool),
+    /// Steps a second.
+    PlaySpeed(f32),
+    /// Hide how nodes are divided, and what would be cheapest, until asked.
+    HideOutcome(bool),
+    /// Show it of the selected node.
+    Reveal,
+    /// Frame the selected cell.
+    FrameSelected,
     /// Frame the whole model.
     FrameAll,
     /// Between perspective and orthographic.
@@ -116,8 +152,26 @@ pub enum Command {
     Navigation(Navigation),
     /// Enlarge or shrink everything; 1 is the system's size.
     Scale(f32),
+    /// Show, or hide, the palette of all commands.
+    Palette(bool),
     /// Show, or hide, the page of keys.
     Help(bool),
+    /// Show, or hide, the page of terms.
+    Terms(bool),
+    /// For an audience: larger, and without panels; or back.
+    Present(bool),
+    /// Split the picture: trace the right part through another structure; or one picture again.
+    PutBeside(Option<&'static str>),
+    /// Where the right part begins, from 0 to 1.
+    Divider(f32),
+    /// Save the whole state of the window.
+    SaveWorkspace,
+    /// Keep the present view, with what is selected.
+    AddBookmark,
+    /// Go back to one that was kept.
+    Bookmark(usize),
+    /// Forget it.
+    DropBookmark(usize),
     /// Panels back to their first sizes.
     ResetLayout,
     /// In and out of full screen.

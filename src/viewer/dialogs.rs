@@ -4,10 +4,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
+use super::workspace_file::ENDING;
+
 /// Something that asks the user for a file. Tests put their own in its place.
 pub trait FileDialog {
     /// Opens the dialog; its answer comes later, `None` for a dialog that was closed.
     fn pick(&self, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>>;
+
+    /// The same for a file to be written, with the name that it would have.
+    fn save(&self, name: &str, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>>;
 }
 
 /// The system's own dialog.
@@ -16,18 +21,31 @@ pub struct SystemDialog;
 
 impl FileDialog for SystemDialog {
     fn pick(&self, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
-        let (sender, receiver) = channel();
-        let answer = rfd::AsyncFileDialog::new().set_title("Open a model").add_filter("3D models", MODELS).pick_file();
-        let wait = move || {
-            let path = pollster::block_on(answer).map(|handle| handle.path().to_path_buf());
-            let _ = sender.send(path); // the window may be gone
-            wake();
-        };
-        // Without a thread the receiver hears at once that nobody will answer.
-        let _ = std::thread::Builder::new().name("open-dialog".into()).spawn(wait);
-        receiver
+        let dialog = rfd::AsyncFileDialog::new().set_title("Open a model or a workspace");
+        answer(dialog.add_filter("3D models and workspaces", MODELS).pick_file(), wake)
+    }
+
+    fn save(&self, name: &str, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+        let dialog = rfd::AsyncFileDialog::new().set_title("Save the workspace").set_file_name(name);
+        answer(dialog.add_filter("Workspaces", &[ENDING]).save_file(), wake)
     }
 }
 
+/// Waits for what a dialog answers, on a thread of its own.
+fn answer(
+    dialog: impl Future<Output = Option<rfd::FileHandle>> + Send + 'static,
+    wake: Arc<dyn Fn() + Send + Sync>,
+) -> Receiver<Option<PathBuf>> {
+    let (sender, receiver) = channel();
+    let wait = move || {
+        let path = pollster::block_on(dialog).map(|handle| handle.path().to_path_buf());
+        let _ = sender.send(path); // the window may be gone
+        wake();
+    };
+    // Without a thread the receiver hears at once that nobody will answer.
+    let _ = std::thread::Builder::new().name("file-dialog".into()).spawn(wait);
+    receiver
+}
+
 /// File name endings that can be opened.
-const MODELS: &[&str] = &["glb", "gltf", "obj", "ply", "stl"];
+const MODELS: &[&str] = &["glb", "gltf", "obj", "ply", "stl", ENDING];

@@ -83,13 +83,14 @@ impl<T> History<T> {
 }
 
 /// What Ctrl+Z brings back.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Choices {
     structure: String,
     params: std::collections::BTreeMap<String, std::collections::BTreeMap<String, String>>,
     test: TestKind,
     overlay: OverlaySettings,
     /// What is selected.
+    #[serde(skip)]
     pub picked: Option<Picked>,
 }
 

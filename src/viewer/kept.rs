@@ -64,7 +64,12 @@ impl Kept {
     }
 
     /// Keeps a structure, as the last used.
-    pub fn keep(&mut self, built: Built) {
+    pub fn keep(&mut self, mut built: Built) {
+        // What is known of it stays known.
+        if let Some(before) = self.0.iter().find(|b| b.key == built.key) {
+            built.stats = built.stats.or_else(|| before.stats.clone());
+            built.quality = built.quality.or_else(|| before.quality.clone());
+        }
         self.0.retain(|b| b.key != built.key);
         self.0.push(built);
     }

@@ -1,12 +1,15 @@
 //! The window. [`state`] knows everything and changes by [`command`]s, [`panels`] draw it, `workers`
 //! do the long work, [`gpu`] puts the 3D view on the screen.
 
+pub mod actions;
 pub mod app;
+pub mod beside;
 pub mod checks;
 pub mod command;
 pub mod dialogs;
 mod endurance;
 pub mod errors;
+pub mod folding;
 pub mod format;
 pub mod gpu;
 mod graphics;
@@ -20,6 +23,7 @@ mod overlay;
 mod pace;
 pub mod panels;
 pub mod pick;
+pub mod rays;
 mod rays_over;
 mod rehearsal;
 mod screenshot;
@@ -29,7 +33,9 @@ pub mod state;
 pub mod theme;
 mod timings;
 pub mod tradeoffs;
+pub mod tree;
 mod workers;
+pub mod workspace_file;
 
 pub use app::App;
 pub use options::ViewerOptions;

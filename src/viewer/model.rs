@@ -56,7 +56,7 @@ fn case(model: &str) -> Option<Result<(Scene, Vec<Ray>), LoadError>> {
 }
 
 /// What is made of the instances of a model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Instances {
     /// Meshes that stand in several places are kept once.
     #[default]

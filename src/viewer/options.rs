@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use super::settings::{Settings, ThemeChoice, Workspace};
 use super::tradeoffs::Plot;
+use crate::accel::outline::Rank;
+use crate::geometry::Axis;
 use crate::render::Mode;
 use crate::scene::CameraSpec;
 
@@ -36,6 +38,15 @@ pub struct ViewerOptions {
     pub check: bool,
     /// Begin in the Compare workspace with that plot; with `screenshot`, fill it first.
     pub errors: Option<Plot>,
+    /// Begin in the Structure workspace; with `screenshot`, select that cell first.
+    pub select: Option<Rank>,
+    /// With that, try a plane across an axis of it, at a place from 0 to 1.
+    pub try_plane: Option<(Axis, f64)>,
+    /// Begin in the Ray workspace; with `screenshot`, follow the ray of that place first: (-1, -1) is the lower left corner of
+    /// the view, (1, 1) the upper right.
+    pub follow: Option<[f32; 2]>,
+    /// Structures whose steps stand beside the shown one's.
+    pub beside: Vec<String>,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
     /// Switch structures a thousand times and open fifty models before that, to see what becomes of the memory.
@@ -64,6 +75,12 @@ impl ViewerOptions {
         settings.theme = self.theme.unwrap_or(settings.theme);
         if self.check {
             settings.workspace = Workspace::Check;
+        }
+        if self.select.is_some() {
+            settings.workspace = Workspace::Structure;
+        }
+        if self.follow.is_some() {
+            settings.workspace = Workspace::Ray;
         }
         if let Some(plot) = self.errors {
             settings.workspace = Workspace::Compare;

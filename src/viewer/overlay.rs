@@ -5,10 +5,11 @@ use std::cmp::Reverse;
 use std::ops::ControlFlow;
 
 use super::gpu::{BoxInstance, Overlay, Ruler, View};
-use super::settings::OverlaySettings;
+use super::settings::{BoxColor, OverlaySettings};
 use super::theme;
 use crate::accel::Accel;
-use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Split, bounds_in_scene, walk};
+use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Split, bounds_in_scene, walk_below};
+use crate::accel::outline::{Outline, Row};
 use crate::geometry::{Aabb, Axis};
 use crate::task::{Cancel, Cancelled};
 
@@ -23,6 +24,10 @@ pub struct Wanted {
     pub size_px: [u32; 2],
     /// The most boxes that are drawn fluently.
     pub limit: usize,
+    /// Below which cell alone, with its row.
+    pub top: Option<(Cell, u32)>,
+    /// The rows of cells are known, for colours that need them.
+    pub numbered: bool,
 }
 
 /// An overlay, and how much of the structure it shows.
@@ -36,6 +41,8 @@ pub struct Collected {
     pub total: usize,
     /// Some lie outside the view with all that is below them, and were not counted.
     pub more: bool,
+    /// What colours go from and to, if they do not stand for depths.
+    pub range: Option<[f32; 2]>,
 }
 
 /// Boxes smaller than this many pixels are not drawn.
@@ -54,6 +61,8 @@ struct Found {
     /// Which that is, as of [`crate::accel::CellId`].
     instance: u32,
     plane: bool,
+    /// What its colour stands for.
+    value: f32,
     /// Who goes first among those that are about as large.
     rank: u32,
 }
@@ -61,7 +70,8 @@ struct Found {
 impl Found {
     fn new(cell: &Cell, px: f32) -> Self {
         let (instance, bounds) = (cell.id.instance, *cell.shape.bounds());
-        Self { px, depth: cell.depth, bounds, instance, plane: false, rank: scatter(cell.id.node ^ scatter(instance)) }
+        let rank = scatter(cell.id.node ^ scatter(instance));
+        Self { px, depth: cell.depth, bounds, instance, plane: false, value: cell.depth as f32, rank }
     }
 
     fn order(&self) -> (Reverse<u32>, u32, bool) {
@@ -100,25 +110,34 @@ struct Collector<'a> {
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
-pub fn collect(accel: &dyn Accel, wanted: &Wanted, cancel: &Cancel) -> Result<Collected, Cancelled> {
+pub fn collect(accel: &dyn Accel, outline: Option<&Outline>, wanted: &Wanted, cancel: &Cancel) -> Result<Collected, Cancelled> {
     let resolution = if let Layout::Flat { resolution, .. } = accel.layout() { Some(resolution) } else { None };
     let ruler = Ruler::new(&wanted.view, wanted.size_px);
     let mut collector = Collector { wanted, ruler, resolution, found: Vec::new(), total: 0, more: false };
     let mut looked = 0u64;
     let mut stopped = Ok(());
-    walk(accel, &mut |cell| {
+    let mut visit = |cell: &Cell, row: Option<Row>| {
         looked += 1;
         if looked.is_multiple_of(CELLS_PER_CHECK) {
             stopped = cancel.check();
         }
-        if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell)) }
-    });
+        if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell, row)) }
+    };
+    let top = wanted.top.map_or_else(|| accel.root(), |top| top.0);
+    match outline.filter(|_| wanted.numbered) {
+        Some(outline) => {
+            let row = wanted.top.map_or(0, |top| top.1);
+            // Whether it broke off is known already.
+            let _ = outline.walk_below(accel, &top, row, &mut |cell, row| visit(cell, Some(outline.row(row))));
+        }
+        None => walk_below(accel, top, &mut |cell| visit(cell, None)),
+    }
     stopped?;
     Ok(collector.finish(accel))
 }
 
 impl Collector<'_> {
-    fn visit(&mut self, accel: &dyn Accel, cell: &Cell) -> Descend {
+    fn visit(&mut self, accel: &dyn Accel, cell: &Cell, row: Option<Row>) -> Descend {
         let s = &self.wanted.settings;
         let bounds = bounds_in_scene(accel, cell);
         let Some(px) = self.ruler.pixels(&bounds) else {
@@ -129,7 +148,8 @@ impl Collector<'_> {
         if self.wants_box(cell) {
             self.total += 1;
             if px >= LEAST_PX {
-                self.keep(Found::new(cell, px));
+                let value = value(s.color, cell, row);
+                self.keep(Found { value, ..Found::new(cell, px) });
             }
         }
         if let Some(Split::Axis { axis, pos }) = cell.split
@@ -138,7 +158,8 @@ impl Collector<'_> {
         {
             self.total += 1;
             if px >= LEAST_PX {
-                self.keep(Found { bounds: plane_in(cell.shape.bounds(), axis, pos), plane: true, ..Found::new(cell, px) });
+                let (bounds, value) = (plane_in(cell.shape.bounds(), axis, pos), value(s.color, cell, row));
+                self.keep(Found { bounds, value, plane: true, ..Found::new(cell, px) });
             }
         }
         let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
@@ -197,12 +218,32 @@ impl Collector<'_> {
         self.found.sort_by_key(|f| f.depth);
         let depths = self.found.iter().map(|f| f.depth);
         let shown = depths.clone().min().unwrap_or(0)..=depths.max().unwrap_or(0);
+        let by_depth = self.wanted.settings.color == BoxColor::Depth;
+        let values = self.found.iter().map(|f| f.value).filter(|value| value.is_finite());
+        let [low, high] = values.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
         let mut overlay = Overlay::default();
         for f in &self.found {
-            let instance = placed(accel, f.instance, &f.bounds, theme::depth_color(f.depth, &shown).to_array());
+            let color = match () {
+                () if by_depth => theme::depth_color(f.depth, &shown),
+                () if f.value.is_finite() => theme::amount_color(f.value, [low, high]),
+                () => theme::UNKNOWN,
+            };
+            let instance = placed(accel, f.instance, &f.bounds, color.to_array());
             if f.plane { overlay.planes.push(instance) } else { overlay.boxes.push(instance) }
         }
-        Collected { overlay, shown: self.found.len(), total: self.total, more: self.more }
+        let range = (!by_depth && low <= high).then_some([low, high]);
+        Collected { overlay, shown: self.found.len(), total: self.total, more: self.more, range }
+    }
+}
+
+/// What the colour of a cell stands for; no number where it is not known.
+fn value(color: BoxColor, cell: &Cell, row: Option<Row>) -> f32 {
+    let of_row = |of: fn(Row) -> f64| row.map_or(f32::NAN, |row| of(row) as f32);
+    match color {
+        BoxColor::Depth => cell.depth as f32,
+        BoxColor::Triangles => of_row(|row| row.references.into()),
+        BoxColor::Cost => of_row(|row| row.share),
+        BoxColor::Overlap => of_row(|row| row.overlap.unwrap_or(f64::NAN)),
     }
 }
 
@@ -215,7 +256,7 @@ pub fn placed(accel: &dyn Accel, instance: u32, bounds: &Aabb, color: [u8; 4]) -
 }
 
 /// The part of a plane that lies in a cell, as a flat box.
-fn plane_in(cell: &Aabb, axis: Axis, pos: f32) -> Aabb {
+pub fn plane_in(cell: &Aabb, axis: Axis, pos: f32) -> Aabb {
     let mut plane = *cell;
     plane.min[axis.index()] = pos;
     plane.max[axis.index()] = pos;
@@ -241,8 +282,8 @@ mod tests {
         let settings = OverlaySettings { boxes: true, planes: false, empty_cells: true, slice: 0, ..OverlaySettings::default() };
         let camera = Camera { eye: Vec3::new(0.3, 0.4, 1.0), target: Vec3::ZERO, up: Vec3::Y, projection };
         let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
-        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit };
-        (collect(accel.as_ref(), &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
+        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false };
+        (collect(accel.as_ref(), None, &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
     }
 
     #[test]
@@ -265,7 +306,7 @@ mod tests {
 
     #[test]
     fn the_larger_go_first() {
-        let cell = |px: f32, rank: u32| Found { px, depth: 0, bounds: Aabb::EMPTY, instance: 0, plane: false, rank };
+        let cell = |px: f32, rank: u32| Found { px, depth: 0, bounds: Aabb::EMPTY, instance: 0, plane: false, value: 0.0, rank };
         assert!(cell(20.0, 9).order() < cell(9.0, 1).order() && cell(10.0, 9).order() > cell(11.0, 1).order());
         assert_eq!(size_class(64.0_f32.next_down()), size_class(64.0_f32.next_up()));
     }

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use super::format;
 use super::gpu::BoxInstance;
 use super::overlay::placed;
-use crate::accel::cell::{Cell, Descend, bounds_in_scene, walk};
+use crate::accel::cell::{Cell, CellId, Descend, bounds_in_scene, walk};
+use crate::accel::outline::{Outline, cells_along};
 use crate::accel::probe::{Counts, Step, Watched};
 use crate::accel::{Accel, Hit, Mode};
 use crate::geometry::{Aabb, Ray};
@@ -31,6 +32,32 @@ pub struct Picked {
 }
 
 impl Picked {
+    /// A cell by its row.
+    pub fn of_row(accel: &dyn Accel, outline: &Outline, row: u32) -> Self {
+        let path = outline.cells(accel, row);
+        let facts = outline.row(row);
+        let kind = if facts.is_leaf() { "Leaf" } else { "Node" };
+        let (references, share) = (format::count(facts.references.into()), format::share(facts.share));
+        let text = format!("{kind} {} at depth {}: {references} triangles, {share} of the SAH cost", facts.id.node, facts.depth);
+        Self { text, level: path.len().saturating_sub(1), boxes: boxes(accel, &path), path, steps: Vec::new(), more_steps: false }
+    }
+
+    /// A cell by those from the root to it.
+    pub fn of_path(accel: &dyn Accel, path: &[CellId]) -> Self {
+        let path = cells_along(accel, path);
+        let text = path.last().map(|cell| {
+            let kind = if cell.is_leaf() { "Leaf" } else { "Node" };
+            format!("{kind} {} at depth {}", cell.id.node, cell.depth)
+        });
+        let text = text.unwrap_or_else(|| "The cell that was selected is not there any more".to_owned());
+        Self { text, level: path.len().saturating_sub(1), boxes: boxes(accel, &path), path, steps: Vec::new(), more_steps: false }
+    }
+
+    /// The numbers of the cells from the root to the selected one.
+    pub fn ids(&self) -> Vec<CellId> {
+        self.path.iter().take(self.level + 1).map(|cell| cell.id).collect()
+    }
+
     /// The selected cell.
     pub fn selected(&self) -> Option<&Cell> {
         self.path.get(self.level)
@@ -61,8 +88,12 @@ pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray, cancel: &Cancel) -> Res
     let depth = path.last().map(|leaf| format!(", leaf at depth {}", leaf.depth)).unwrap_or_default();
     let work = format!("{} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
     let text = format!("Triangle {}{name}{depth}: this ray took {work}", format::count(u64::from(hit.primitive)));
-    let boxes = path.iter().map(|cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4])).collect();
-    Ok(Some(Picked { text, level: path.len().saturating_sub(1), path, boxes, steps, more_steps }))
+    Ok(Some(Picked { text, level: path.len().saturating_sub(1), boxes: boxes(accel, &path), path, steps, more_steps }))
+}
+
+/// The boxes of cells, in the scene's scaled space.
+fn boxes(accel: &dyn Accel, path: &[Cell]) -> Vec<BoxInstance> {
+    path.iter().map(|cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4])).collect()
 }
 
 /// The cells from the root to the leaf that holds the triangle and the point; empty if none does.

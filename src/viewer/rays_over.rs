@@ -32,6 +32,7 @@ const fn color(kind: MarkKind, palette: &Palette) -> Color32 {
         MarkKind::Wrong => palette.fail,
         MarkKind::Rounded => palette.warn,
         MarkKind::Plain => palette.accent_text,
+        MarkKind::Here => palette.text,
     }
 }
 

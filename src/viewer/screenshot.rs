@@ -16,6 +16,9 @@ use super::panels::Commands;
 use super::rehearsal::Rehearsal;
 use super::state::State;
 use super::tradeoffs::Plot;
+use crate::accel::outline::Rank;
+use crate::accel::registry;
+use crate::geometry::Axis;
 use crate::sys::{folder_of, temporary_in};
 
 /// What is still to be done.
@@ -26,6 +29,11 @@ pub struct Screenshot {
     check: bool,
     /// The plot of errors that is still to be filled, and how far that is.
     errors: Option<(Plot, usize)>,
+    /// The cell that is still to be selected, and the plane to be tried in it.
+    select: Option<Rank>,
+    try_plane: Option<(Axis, f64)>,
+    /// What is still to be done in the Ray workspace.
+    follow: Vec<Command>,
     rehearsal: Option<Rehearsal>,
     endurance: Option<Endurance>,
     /// What the long run found, in words.
@@ -68,6 +76,9 @@ impl Screenshot {
             measure: options.measure,
             check: options.check,
             errors: options.errors.map(|plot| (plot, 0)),
+            select: options.select,
+            try_plane: options.try_plane,
+            follow: follow(options),
             rehearsal: options.pace.then(Rehearsal::default),
             endurance: options.endure.then(Endurance::default),
             endured: String::new(),
@@ -96,6 +107,20 @@ impl Screenshot {
                 }
             }
             Stage::Settling if settled && self.errors.is_some() => self.fill(state, commands),
+            Stage::Settling if settled && self.select.is_some() => {
+                let outline = state.tree.outline.as_ref();
+                commands.extend(self.select.take().and_then(|rank| outline?.greatest(rank)).map(Command::SelectRow));
+            }
+            Stage::Settling if settled && self.try_plane.is_some() => {
+                commands.push(Command::TryPlane(self.try_plane.take()));
+            }
+            Stage::Settling if settled && !self.follow.is_empty() => {
+                commands.push(match self.follow.remove(0) {
+                    // The middle of the way says more than its start.
+                    Command::Step(column, _) => Command::Step(column, state.rays.last() * 2 / 3),
+                    other => other,
+                });
+            }
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
                 self.stage = Stage::Measuring;
@@ -134,6 +159,13 @@ impl Screenshot {
             Stage::Settling | Stage::Measuring | Stage::Checking | Stage::Done => {}
         }
     }
+}
+
+/// What shows a ray in several structures.
+fn follow(options: &ViewerOptions) -> Vec<Command> {
+    let Some(at) = options.follow else { return Vec::new() };
+    let beside = options.beside.iter().filter_map(|id| registry::find(id)).map(|entry| Command::Beside(entry.id, true));
+    std::iter::once(Command::Pick(at.into())).chain(beside).chain([Command::Step(0, 0)]).collect()
 }
 
 /// Structures whose curves of errors are drawn beside that of the one that is shown first.

@@ -32,6 +32,8 @@ pub struct Settings {
     pub overlay: OverlaySettings,
     /// What stands around the view.
     pub workspace: Workspace,
+    /// How nodes are divided is hidden until asked.
+    pub hide_outcome: bool,
     /// Light or dark.
     pub theme: ThemeChoice,
     /// Which button does what.
@@ -60,6 +62,7 @@ impl Default for Settings {
             sampler: SamplerKind::default(),
             overlay: OverlaySettings::default(),
             workspace: Workspace::default(),
+            hide_outcome: false,
             theme: ThemeChoice::default(),
             navigation: Navigation::default(),
             scale: 1.0,
@@ -90,6 +93,49 @@ pub struct OverlaySettings {
     pub slice_axis: usize,
     /// Lines behind the surface.
     pub hidden_lines: bool,
+    /// Only the selected cell and what is below it.
+    pub subtree_only: bool,
+    /// What colours of boxes stand for.
+    pub color: BoxColor,
+}
+
+/// What colours of boxes stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum BoxColor {
+    /// The steps from the root.
+    #[default]
+    Depth,
+    /// Triangles in the cell and below.
+    Triangles,
+    /// The part of the SAH cost that the cell and what is below it make up.
+    Cost,
+    /// How often a line that meets the node meets the overlap of its children.
+    Overlap,
+}
+
+impl BoxColor {
+    /// All, in the order of menus.
+    pub const ALL: [Self; 4] = [Self::Depth, Self::Triangles, Self::Cost, Self::Overlap];
+
+    /// The name in menus.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Depth => "By depth",
+            Self::Triangles => "By triangles",
+            Self::Cost => "By SAH share",
+            Self::Overlap => "By overlap",
+        }
+    }
+
+    /// What is written beside the colours.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Depth => "Depth",
+            Self::Triangles => "Triangles",
+            Self::Cost => "SAH share",
+            Self::Overlap => "Overlap",
+        }
+    }
 }
 
 impl Default for OverlaySettings {
@@ -104,6 +150,8 @@ impl Default for OverlaySettings {
             slice: 0,
             slice_axis: 2,
             hidden_lines: true,
+            subtree_only: false,
+            color: BoxColor::default(),
         }
     }
 }
@@ -114,6 +162,10 @@ pub enum Workspace {
     /// Statistics and timings.
     #[default]
     View,
+    /// The tree of cells, and how each is divided.
+    Structure,
+    /// One ray, step by step.
+    Ray,
     /// The picture's error against what it costs.
     Compare,
     /// The stability lab, and what is known to be wrong with the model.
@@ -122,12 +174,14 @@ pub enum Workspace {
 
 impl Workspace {
     /// All, in the order of their tabs.
-    pub const ALL: [Self; 3] = [Self::View, Self::Compare, Self::Check];
+    pub const ALL: [Self; 5] = [Self::View, Self::Structure, Self::Ray, Self::Compare, Self::Check];
 
     /// The name on the tab.
     pub const fn name(self) -> &'static str {
         match self {
             Self::View => "View",
+            Self::Structure => "Structure",
+            Self::Ray => "Ray",
             Self::Compare => "Compare",
             Self::Check => "Check",
         }
@@ -142,6 +196,8 @@ impl Workspace {
     pub const fn help(self) -> &'static str {
         match self {
             Self::View => "Statistics of the structure, and timings of all of them.",
+            Self::Structure => "The tree of cells, what each costs, and what dividing it otherwise would have cost.",
+            Self::Ray => "One ray, step by step, through up to four structures.",
             Self::Compare => "The error of the path traced picture, against samples and against seconds.",
             Self::Check => "Right answers: the stability lab, and a check of the open model.",
         }
@@ -194,6 +250,19 @@ impl Settings {
     pub fn remember(&mut self, entry: &Entry, values: &ParamValues) {
         let set = values.iter().filter(|(p, v)| p.default() != *v).map(|(p, v)| (p.id.to_owned(), v.to_string())).collect();
         self.params.insert(entry.id.to_owned(), set);
+    }
+
+    /// Takes what concerns the view from others; what belongs to the person stays.
+    pub fn take_view(&mut self, other: &Self) {
+        let own = self.clone();
+        *self = Self {
+            recent: own.recent,
+            theme: own.theme,
+            navigation: own.navigation,
+            scale: own.scale,
+            memory_mib: own.memory_mib,
+            ..other.clone()
+        };
     }
 
     /// Puts a model at the head of the recent ones.

@@ -9,7 +9,7 @@ mod ramp;
 pub use lines::{DASH_PT, LineStyle, PLANE_FILL, PLANE_FILL_HIDDEN};
 pub use marker::Marker;
 pub use palette::{Mark, Palette};
-pub use ramp::{depth_color, depth_position, difference, viridis};
+pub use ramp::{amount_color, depth_color, depth_position, difference, viridis};
 
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme, Vec2, Visuals, style};
 
@@ -45,6 +45,24 @@ pub const MATRIX_PANEL: f32 = 320.0;
 pub const CASE_NAME: f32 = 28.0 * GRID;
 /// The width of the dark edge around rays that are drawn over the view.
 pub const RAY_HALO: f32 = 3.0;
+/// How much of its colour is left of what stands behind something.
+pub const FAINT: f32 = 0.3;
+/// A plane that somebody tries.
+pub const TRIED: Color32 = Color32::from_rgb(255, 255, 255);
+/// A box of which an amount is not known.
+pub const UNKNOWN: Color32 = Color32::from_rgb(128, 128, 128);
+/// The width and height of a page of text.
+pub const PAGE: f32 = 480.0;
+/// What everything is enlarged by for an audience, and lines besides.
+pub const PRESENTED: f32 = 1.5;
+/// The width of lines for an audience.
+pub const PRESENTED_LINES: f32 = 2.0;
+/// The height of menus that show all of their entries.
+pub const LONG_MENU: f32 = 14.0 * ROW;
+/// The height of the steps of a ray.
+pub const STEPS_PANEL: f32 = 280.0;
+/// The width of the tree of cells.
+pub const TREE_PANEL: f32 = 336.0;
 /// The height of the bar at the top.
 pub const TOP_BAR: f32 = 32.0;
 /// From this width on the structures and what is shown of them stand in one row above the view.

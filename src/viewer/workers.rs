@@ -5,19 +5,23 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
+use super::beside::Pauses;
 use super::checks::{RAYS, SEED};
 use super::kept::{Built, Key};
 use super::model::{self, Instances, Model};
 use super::overlay::{self, Collected, Wanted};
 use super::pick::{self, Picked};
 use super::shown;
+use crate::accel::outline::{Outline, OutlineError};
 use crate::accel::registry;
 use crate::accel::stats::{SahWeights, Stats};
-use crate::accel::{Accel, BuildCx, BuildError, Cell};
+use crate::accel::{Accel, BuildCx, BuildError, Cell, CellId};
 use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::job::Job;
 use crate::lab::converge::Reference;
+use crate::lab::findings::{self, Findings};
+use crate::lab::follow::{self, Followed};
 use crate::lab::needs::{Kept, NeedsReport};
 use crate::lab::stability::{self, CaseRow, cases};
 use crate::lab::tradeoffs::{TradeoffRow, Tradeoffs, Variant};
@@ -63,7 +67,8 @@ impl Shared {
         threads.into_iter().for_each(|thread| drop(thread.join()));
     }
 
-    fn waker(&self) -> impl FnOnce() + Send + 'static + use<> {
+    /// Wakes the window once a job is done.
+    pub fn waker(&self) -> impl FnOnce() + Send + 'static + use<> {
         let wake = Arc::clone(&self.wake);
         move || wake()
     }
@@ -161,7 +166,7 @@ pub fn needs(
     shared: &Shared,
     (model, shown): (&Model, &Built),
     view: (Camera, [u32; 2]),
-    pause: render::progressive::Pause,
+    pause: Pauses,
 ) -> std::io::Result<Needing> {
     let Shared { pool, budget, .. } = shared.clone();
     let (scene, geometry, looks) = (Arc::clone(&model.scene), Arc::clone(&model.geometry), Arc::clone(&model.looks));
@@ -182,8 +187,13 @@ pub fn needs(
 pub type Collecting = Job<Result<Collected, Cancelled>>;
 
 /// Starts collecting the boxes of a view.
-pub fn collect(shared: &Shared, accel: Arc<dyn Accel>, wanted: Wanted) -> std::io::Result<Collecting> {
-    Job::spawn("overlay", shared.waker(), move |cancel, _| overlay::collect(accel.as_ref(), &wanted, cancel))
+pub fn collect(
+    shared: &Shared,
+    accel: Arc<dyn Accel>,
+    outline: Option<Arc<Outline>>,
+    wanted: Wanted,
+) -> std::io::Result<Collecting> {
+    Job::spawn("overlay", shared.waker(), move |cancel, _| overlay::collect(accel.as_ref(), outline.as_deref(), &wanted, cancel))
 }
 
 /// What was clicked, on its way.
@@ -198,8 +208,108 @@ pub fn pick(shared: &Shared, scene: Arc<Scene>, accel: Arc<dyn Accel>, ray: Ray)
 pub type Curving = Job<Result<Option<SahCurves>, Cancelled>>;
 
 /// Starts working out what dividing a cell would have cost.
-pub fn curves(shared: &Shared, accel: Arc<dyn Accel>, cell: Cell, weights: SahWeights) -> std::io::Result<Curving> {
-    Job::spawn("curves", shared.waker(), move |cancel, _| sah_curves(accel.as_ref(), &cell, weights, cancel))
+pub fn curves(shared: &Shared, shown: &Built, cell: Cell) -> std::io::Result<Curving> {
+    let (accel, params) = (Arc::clone(&shown.accel), shown.key.params.clone());
+    Job::spawn("curves", shared.waker(), move |cancel, _| sah_curves(accel.as_ref(), &cell, &params, cancel))
+}
+
+/// The list of a structure's cells, on its way.
+pub type Outlining = Job<Result<Outline, OutlineError>>;
+
+/// Starts listing the cells of a structure.
+pub fn outline(shared: &Shared, shown: &Built) -> std::io::Result<Outlining> {
+    let (accel, weights) = (Arc::clone(&shown.accel), SahWeights::of(&shown.key.params));
+    let budget = shared.budget.clone();
+    Job::spawn("outline", shared.waker(), move |cancel, progress| {
+        Outline::of(accel.as_ref(), weights, (&budget, cancel, progress))
+    })
+}
+
+/// Starts making the cells along a path of them.
+pub fn select_path(shared: &Shared, accel: Arc<dyn Accel>, path: Vec<CellId>) -> std::io::Result<Selecting> {
+    Job::spawn("select", shared.waker(), move |_, _| Picked::of_path(accel.as_ref(), &path))
+}
+
+/// The cells of a row, on their way.
+pub type Selecting = Job<Picked>;
+
+/// Starts making the cells from the root to a row: a grid has millions of children.
+pub fn select(shared: &Shared, accel: Arc<dyn Accel>, outline: Arc<Outline>, row: u32) -> std::io::Result<Selecting> {
+    Job::spawn("select", shared.waker(), move |_, _| Picked::of_row(accel.as_ref(), &outline, row))
+}
+
+/// Why rays are slow, and the cells that say so, on their way; or why there is none: nothing to say where it was stopped.
+pub type FindingCauses = Job<Result<(Findings, Arc<Outline>), String>>;
+
+/// Starts looking why rays of a view are slow, listing the structure's cells first if they are not; the renderer is kept from
+/// running meanwhile.
+pub fn find_causes(
+    shared: &Shared,
+    (shown, outline): (&Built, Option<Arc<Outline>>),
+    (view, size_px): (render::Job, [u32; 2]),
+    pause: Pauses,
+) -> std::io::Result<FindingCauses> {
+    let Shared { pool, budget, .. } = shared.clone();
+    let (key, weights) = (shown.key.clone(), SahWeights::of(&shown.key.params));
+    Job::spawn("causes", shared.waker(), move |cancel, progress| {
+        pause.wait();
+        let outline = match outline {
+            Some(outline) => outline,
+            None => match Outline::of(view.accel.as_ref(), weights, (&budget, cancel, progress)) {
+                Ok(outline) => Arc::new(outline),
+                Err(OutlineError::Cancelled(_)) => return Err(String::new()),
+                Err(why) => return Err(why.to_string()),
+            },
+        };
+        let found = findings::find(&view, size_px, (key.entry, &key.params, &outline), &pool, cancel, progress);
+        found.map(|found| (found, outline)).map_err(|_| String::new())
+    })
+}
+
+/// A ray that is to be followed.
+pub struct ToFollow {
+    /// Structures that are there, the shown one first.
+    pub kept: Vec<Built>,
+    /// Structures to build first.
+    pub missing: Vec<Key>,
+    /// A ray of the camera, or any other.
+    pub ray: Ray,
+    /// The ray itself, or one that leaves what it meets.
+    pub kind: RayKind,
+    /// From where the picture is seen.
+    pub camera: Camera,
+}
+
+/// A ray, as structures traced it.
+#[derive(Default)]
+pub struct FollowedRay {
+    /// The ray; `None` if the one that it was to leave meets nothing.
+    pub ray: Option<Ray>,
+    /// Each structure, and its steps.
+    pub columns: Vec<(Built, Followed)>,
+    /// Structures that could not be built, and why.
+    pub failed: Vec<NotBuilt>,
+}
+
+/// A ray on its way.
+pub type Following = Job<Result<FollowedRay, Cancelled>>;
+
+/// Starts following a ray through structures, building those that are missing.
+pub fn follow(shared: &Shared, wanted: ToFollow) -> std::io::Result<Following> {
+    let Shared { pool, budget, .. } = shared.clone();
+    Job::spawn("follow", shared.waker(), move |cancel, progress| {
+        let Some(first) = wanted.kept.first().cloned() else { return Ok(FollowedRay::default()) };
+        let ray = lab::leaving(wanted.kind, first.accel.as_ref(), &wanted.camera, &wanted.ray, cancel)?;
+        let Some(ray) = ray else { return Ok(FollowedRay::default()) };
+        let cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
+        let (built, failed) = build_missing(wanted.kept, wanted.missing, first.accel.geometry(), &cx)?;
+        let of = |built: Built| {
+            let followed = follow::follow(built.accel.as_ref(), &ray, wanted.kind.mode(), cancel)?;
+            Ok((built, followed))
+        };
+        let columns = built.into_iter().map(of).collect::<Result<Vec<_>, Cancelled>>()?;
+        Ok(FollowedRay { ray: Some(ray), columns, failed })
+    })
 }
 
 /// What measuring brings: every structure that could be built, its figures, and why others have
@@ -236,31 +346,35 @@ pub struct Plan {
 }
 
 /// A structure that could not be built, by its id, and why.
-type NotBuilt = (&'static str, String);
+pub type NotBuilt = (&'static str, String);
 
-impl Plan {
-    /// Builds what is missing: all structures, and those that could not be built.
-    fn build(self, cx: &BuildCx) -> Result<(Vec<Built>, Vec<NotBuilt>), Cancelled> {
-        let (mut built, mut failed) = (self.kept, Vec::new());
-        for key in self.missing {
-            let id = key.entry.id;
-            match build_now(key, self.view.accel.geometry(), cx) {
-                Ok(one) => built.push(one),
-                Err(BuildError::Cancelled(cancelled)) => return Err(cancelled),
-                Err(why) => failed.push((id, why.to_string())),
-            }
+/// Builds what is missing beside what is kept: all structures, and those that could not be built.
+fn build_missing(
+    mut built: Vec<Built>,
+    missing: Vec<Key>,
+    geometry: &Arc<Geometry>,
+    cx: &BuildCx,
+) -> Result<(Vec<Built>, Vec<NotBuilt>), Cancelled> {
+    let mut failed = Vec::new();
+    for key in missing {
+        let id = key.entry.id;
+        match build_now(key, geometry, cx) {
+            Ok(one) => built.push(one),
+            Err(BuildError::Cancelled(cancelled)) => return Err(cancelled),
+            Err(why) => failed.push((id, why.to_string())),
         }
-        Ok((built, failed))
     }
+    Ok((built, failed))
 }
 
 /// Starts measuring; the renderer is kept from running meanwhile.
-pub fn measure_all(shared: &Shared, plan: Plan, pause: render::progressive::Pause) -> std::io::Result<Measuring> {
+pub fn measure_all(shared: &Shared, plan: Plan, pause: Pauses) -> std::io::Result<Measuring> {
     let Shared { pool, budget, .. } = shared.clone();
     Job::spawn("measure", shared.waker(), move |cancel, progress| {
         pause.wait();
         let (view, size_px) = (plan.view.clone(), plan.size_px);
-        let (built, failed) = plan.build(&BuildCx::new(cancel.clone(), progress.clone(), pool.clone(), budget))?;
+        let cx = BuildCx::new(cancel.clone(), progress.clone(), pool.clone(), budget);
+        let (built, failed) = build_missing(plan.kept, plan.missing, view.accel.geometry(), &cx)?;
         let mut measured = Measured { built, failed, view: Some((view.camera, size_px)), ..Measured::default() };
         let [width, height] = size_px;
         let rays = RaySet::generate(RayKind::Primary, &view, width, height, &pool, cancel)?;
@@ -286,13 +400,7 @@ pub fn measure_all(shared: &Shared, plan: Plan, pause: render::progressive::Paus
 pub type Referring = Job<Result<Reference, Cancelled>>;
 
 /// Starts a reference of a view, of so many samples; the renderer is kept from running meanwhile.
-pub fn reference(
-    shared: &Shared,
-    view: render::Job,
-    size_px: [u32; 2],
-    spp: u32,
-    pause: render::progressive::Pause,
-) -> std::io::Result<Referring> {
+pub fn reference(shared: &Shared, view: render::Job, size_px: [u32; 2], spp: u32, pause: Pauses) -> std::io::Result<Referring> {
     let pool = shared.pool.clone();
     Job::spawn("reference", shared.waker(), move |cancel, progress| {
         pause.wait();
@@ -344,7 +452,7 @@ pub fn tradeoffs(
     variants: Vec<Variant>,
     view: render::Job,
     [width, height]: [u32; 2],
-    (through, pause): (Sender<TradeoffRow>, render::progressive::Pause),
+    (through, pause): (Sender<TradeoffRow>, Pauses),
 ) -> std::io::Result<Trading> {
     let Shared { pool, budget, wake, .. } = shared.clone();
     Job::spawn("tradeoffs", shared.waker(), move |cancel, progress| {
@@ -402,7 +510,7 @@ pub fn check_model(shared: &Shared, plan: Plan) -> std::io::Result<Checking> {
         let cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
         let (view, [width, height]) = (plan.view.clone(), plan.size_px);
         // What cannot be built has no row; choosing it says why.
-        let (built, _) = plan.build(&cx)?;
+        let (built, _) = build_missing(plan.kept, plan.missing, view.accel.geometry(), &cx)?;
         let checked = |b: &Built| Checked { id: b.key.entry.id.to_owned(), test: b.key.test, accel: Arc::clone(&b.accel) };
         let structures: Vec<Checked> = built.iter().map(checked).collect();
         // Half of the pixels on either axis.

@@ -43,6 +43,16 @@ fn everything_that_can_be_used_has_a_name() {
     w.key(Modifiers::NONE, Key::Questionmark);
     all_named(&mut w, "the page of keys");
     w.key(Modifiers::NONE, Key::Escape);
+    w.key(Modifiers::NONE, Key::F2);
+    w.until("the tree", |s| s.tree.outline.is_some());
+    w.button("Deepest leaf");
+    w.settle();
+    all_named(&mut w, "the Structure workspace");
+    w.key(Modifiers::NONE, Key::F3);
+    all_named(&mut w, "the Ray workspace");
+    w.key(Modifiers::COMMAND, Key::P);
+    all_named(&mut w, "the palette");
+    w.key(Modifiers::NONE, Key::Escape);
     w.key(Modifiers::NONE, Key::F5);
     all_named(&mut w, "the Check workspace");
     w.button("Run the lab");

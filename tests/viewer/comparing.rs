@@ -1,14 +1,16 @@
 //! The Compare workspace: the picture's error as it falls, and quality against its cost.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use boxwood::accel::registry;
-use boxwood::render::Mode;
-use boxwood::viewer::ViewerOptions;
+use boxwood::render::{Mode, Picture};
 use boxwood::viewer::errors::Known;
 use boxwood::viewer::settings::Workspace;
+use boxwood::viewer::state::State;
 use boxwood::viewer::tradeoffs::Plot;
-use eframe::egui::{Key, Modifiers, Role};
+use boxwood::viewer::{ViewerOptions, format};
+use eframe::egui::{Key, Modifiers, PointerButton, Role, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::window::{Setup, Window};
@@ -103,4 +105,47 @@ fn quality_is_measured_structure_by_structure_and_can_be_cancelled() {
     w.button("Intersection");
     assert_eq!(w.state().tradeoffs.plot, Plot::Intersection);
     assert!(!w.says("Not measured. Press Measure."));
+}
+
+#[test]
+fn two_structures_trace_one_view_on_either_side_of_a_divider() {
+    let mut w = Window::with_model("builtin:teapot?triangles=1000");
+    w.choose("Shaded", Mode::Nodes.label());
+    w.settle();
+    // Three clicks: the workspace, the list, the structure.
+    w.button("Compare workspace");
+    w.choose("No second", "and k-d tree");
+    w.until("two pictures", |s| s.is_split() && s.beside.picture.as_ref().is_some_and(|picture| picture.progress.done));
+    w.settle();
+    let state = w.state();
+    let (first, second) = (state.picture.as_ref().expect("traced"), state.beside.picture.as_ref().expect("traced"));
+    assert_eq!((first.camera, first.range, first.width), (second.camera, second.range, second.width), "one view, one range");
+    assert_ne!(first.rgba, second.rgba, "different structures");
+    let nodes = |picture: &Picture| picture.progress.counts.nodes as f64 / picture.progress.counted as f64;
+    for (name, picture) in [("BVH", first), ("k-d tree", second)] {
+        assert!(w.says(&format!("{name}: {} nodes", format::number(nodes(picture)))), "{name}");
+    }
+    // The divider is moved by hand, by keys, and by typing.
+    let view = w.viewport();
+    w.drag(view.center(), vec2(-0.25 * view.width(), 0.0), PointerButton::Primary, Modifiers::NONE);
+    assert!((w.state().beside.divider - 0.25).abs() < 0.02, "{}", w.state().beside.divider);
+    let camera = w.state().camera;
+    w.key(Modifiers::NONE, Key::ArrowRight);
+    assert!((w.state().beside.divider - 0.27).abs() < 0.02 && w.state().camera == camera);
+    // Both follow the camera.
+    w.drag(view.center() + vec2(60.0, 40.0), vec2(40.0, 0.0), PointerButton::Primary, Modifiers::NONE);
+    assert_ne!(w.state().camera, camera);
+    w.until("two pictures from there", |s| {
+        let there = |picture: &Option<Arc<Picture>>| picture.as_ref().is_some_and(|p| p.camera == s.camera && p.progress.done);
+        there(&s.picture) && there(&s.beside.picture)
+    });
+    // Where errors are measured against seconds nothing else is traced.
+    w.choose(Mode::Nodes.label(), Mode::Path.label());
+    w.step();
+    assert!(!w.state().is_split());
+    w.choose(Mode::Path.label(), "Shaded");
+    w.until("two pictures again", State::is_split);
+    w.choose("and k-d tree", "No second");
+    w.step();
+    assert!(!w.state().is_split());
 }

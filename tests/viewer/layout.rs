@@ -38,7 +38,8 @@ const ALWAYS: [&str; 12] =
     ["File", "View", "Window", "Help", "SCENE", "TIMINGS", "Measure", "BVH", "k-d", "Grid", "Brute", "Shaded"];
 
 /// What stands beside the bar because it belongs to the panel there.
-const BESIDE: [&str; 3] = ["Statistics", "Findings", "Check this model"];
+const BESIDE: [&str; 10] =
+    ["Statistics", "Findings", "Check this model", "Selected cell", "Ray", "Parent", "Child", "Sibling", "Frame", "Copy"];
 
 fn open(case: &Case, options: impl FnOnce(&mut Setup)) -> Window {
     let mut setup = Setup { size: case.size, pixels_per_point: case.pixels_per_point, ..Setup::default() };
@@ -56,7 +57,7 @@ fn complaints(w: &Window) -> Vec<String> {
     let visible: Vec<(&Painted, Rect)> =
         texts.iter().map(|t| (t, t.rect.intersect(t.clip).intersect(screen))).filter(|(_, r)| r.is_positive()).collect();
     let mut wrong = Vec::new();
-    for t in &texts {
+    for t in texts.iter().filter(|t| !t.text.is_empty()) {
         let beside = t.rect.y_range().intersection(t.clip.y_range()).span() > SLACK && !t.rect.intersect(t.clip).is_positive();
         if beside {
             wrong.push(format!("out of sight at a side: {:?}", t.text));
@@ -204,6 +205,52 @@ fn no_text_is_cut_off_in_the_check_workspace() {
     }
     // Timings stand in another workspace.
     wrong.retain(|c| !["\"TIMINGS\"", "\"Measure\""].iter().any(|name| c.ends_with(name)));
+    report(wrong);
+}
+
+#[test]
+fn no_text_is_cut_off_around_a_tree_and_a_ray() {
+    let mut wrong = Vec::new();
+    for case in &CASES {
+        let mut w = open(case, |s| s.options.model = Some("builtin:teapot?triangles=1000".into()));
+        w.key(Modifiers::NONE, egui::Key::F2);
+        w.until("the tree", |s| s.tree.outline.is_some());
+        check(&mut w, case, "a tree", &mut wrong);
+        w.button("Deepest leaf");
+        w.settle();
+        check(&mut w, case, "a leaf of the tree", &mut wrong);
+        w.key(Modifiers::NONE, egui::Key::F3);
+        check(&mut w, case, "no ray", &mut wrong);
+        let at = w.viewport().center();
+        w.press_in_one_frame(at);
+        w.until("steps", |s| !s.rays.columns.is_empty());
+        check(&mut w, case, "a ray", &mut wrong);
+        if w.has(egui::Role::Button, "k-d tree beside") {
+            w.button("k-d tree beside");
+            w.settle();
+            w.button("Grid beside");
+            w.settle();
+            check(&mut w, case, "a ray in three structures", &mut wrong);
+        }
+    }
+    // Timings stand in another workspace, and so does the scene beside the tree.
+    wrong.retain(|c| !["\"TIMINGS\"", "\"Measure\"", "\"SCENE\""].iter().any(|name| c.ends_with(name)));
+    report(wrong);
+}
+
+#[test]
+fn pages_fit_small_windows() {
+    let mut wrong = Vec::new();
+    for case in &CASES[..2] {
+        let mut w = open(case, |_| {});
+        w.key(Modifiers::NONE, egui::Key::Questionmark);
+        w.step();
+        let page = w.harness.get_by_role_and_label(egui::Role::Window, "Keys and mouse").rect();
+        if !w.harness.ctx.content_rect().contains_rect(page) {
+            wrong.push(format!("{}: the page of keys is too large: {page}", case.name));
+        }
+        w.key(Modifiers::NONE, egui::Key::Escape);
+    }
     report(wrong);
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
-use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::time::{Duration, Instant};
 
 use boxwood::viewer::dialogs::FileDialog;
@@ -22,6 +22,9 @@ pub const PATIENCE: Duration = Duration::from_secs(40);
 /// Tests run side by side, but for those that look at the clock: they wait for the others to end.
 static QUIET: RwLock<()> = RwLock::new(());
 
+/// Some drivers wait for ever where several threads of a program make devices at the same time.
+static DEVICES: Mutex<()> = Mutex::new(());
+
 enum Turn {
     Shared(#[expect(dead_code, reason = "held, not read")] RwLockReadGuard<'static, ()>),
     Alone(#[expect(dead_code, reason = "held, not read")] RwLockWriteGuard<'static, ()>),
@@ -36,6 +39,10 @@ impl FileDialog for Answer {
         sender.send(self.0.clone()).expect("the receiver is here");
         wake();
         receiver
+    }
+
+    fn save(&self, _: &str, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+        self.pick(wake)
     }
 }
 
@@ -92,6 +99,7 @@ pub struct Painted {
 pub struct Window {
     pub harness: Harness<'static, App>,
     _turn: Turn,
+    _device: Option<MutexGuard<'static, ()>>,
 }
 
 impl Window {
@@ -115,6 +123,7 @@ impl Window {
         let mut builder = Harness::builder().with_size(setup.size).with_pixels_per_point(setup.pixels_per_point);
         // Real frames are short; with long ones two clicks are never close enough to be a double click.
         builder = builder.with_step_dt(1.0 / 60.0);
+        let device = setup.gpu.then(|| DEVICES.lock().unwrap_or_else(PoisonError::into_inner));
         if setup.gpu {
             builder = builder.wgpu();
         }
@@ -130,7 +139,7 @@ impl Window {
             }
             app
         });
-        Self { harness, _turn: turn }
+        Self { harness, _turn: turn, _device: device }
     }
 
     /// A window with a model, settled.

@@ -74,6 +74,11 @@ impl Cells for Instanced {
         if whole { Layout::Hierarchy } else { Layout::SplitHierarchy }
     }
 
+    fn layout_of(&self, instance: u32) -> Layout {
+        // The upper level is a BVH.
+        self.accel_below(instance).map_or(Layout::Hierarchy, |accel| accel.layout())
+    }
+
     fn level(&self, instance: u32) -> Option<Level> {
         match self.below(instance.checked_sub(1)?)? {
             Below::Part(place, _) => Some(Level { instance: Some(place.instance), scene_from_level: place.scene_from_part() }),

@@ -120,6 +120,7 @@ impl<P: Probe, A: Ask<P>> Walk<'_, P, A> {
                 let ray = Ray { tmax: self.nearest.t, ..*self.ray };
                 let entered = accel.geometry().space().enter_mapped(&ray, place.part_from_scene());
                 if entered.ray.tmin > entered.ray.tmax {
+                    self.probe.level(0);
                     return Ok(false);
                 }
                 let in_scene = |hit: PrimHit| {

@@ -59,6 +59,8 @@ pub struct Overlay {
     pub boxes: Vec<BoxInstance>,
     /// Flat boxes, filled and with edges: split planes.
     pub planes: Vec<BoxInstance>,
+    /// A plane more, which somebody tries.
+    pub tried: Option<BoxInstance>,
     /// The selected box, over everything else and in its own style; its colour is not used.
     pub selected: Option<BoxInstance>,
 }
@@ -84,21 +86,22 @@ impl OverlayBuffer {
         }
         // Far more than can be told apart on any screen; what is selected and the planes go first.
         let most = num::floor_index(device.limits().max_buffer_size as f64, num::MAX_INDEX) / size_of::<BoxInstance>();
-        let selected = overlay.selected.as_slice();
-        let planes = &overlay.planes[..overlay.planes.len().min(most - selected.len())];
-        let boxes = &overlay.boxes[..overlay.boxes.len().min(most - selected.len() - planes.len())];
+        let (selected, tried) = (overlay.selected.as_slice(), overlay.tried.as_slice());
+        let single = selected.len() + tried.len();
+        let planes = &overlay.planes[..overlay.planes.len().min(most - single)];
+        let boxes = &overlay.boxes[..overlay.boxes.len().min(most - single - planes.len())];
 
-        let count = boxes.len() + planes.len() + selected.len();
+        let count = boxes.len() + planes.len() + single;
         if (count * size_of::<BoxInstance>()) as u64 > self.buffer.size() {
             self.buffer = instance_buffer(device, count.next_power_of_two().min(most));
         }
         let mut offset = 0;
-        for part in [boxes, planes, selected] {
+        for part in [boxes, planes, tried, selected] {
             let bytes: &[u8] = bytemuck::cast_slice(part);
             queue.write_buffer(&self.buffer, offset, bytes);
             offset += bytes.len() as u64;
         }
-        [self.boxes, self.planes, self.selected] = [boxes, planes, selected].map(|part| num::index(part.len()));
+        [self.boxes, self.planes, self.selected] = [boxes.len(), planes.len() + tried.len(), selected.len()].map(num::index);
         self.generation = Some(overlay.generation);
     }
 

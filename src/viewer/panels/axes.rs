@@ -2,14 +2,13 @@
 
 use std::ops::RangeInclusive;
 
-use egui_plot::{GridInput, GridMark, Legend, Plot};
+use egui_plot::{GridInput, GridMark, Plot};
 
 use crate::viewer::format;
 
 /// A plot that stays as it is, with names along its axes.
 pub fn log_log<'a>(id: &str, [x, y]: [&str; 2]) -> Plot<'a> {
     Plot::new(id)
-        .legend(Legend::default())
         .allow_zoom(false)
         .allow_scroll(false)
         .allow_drag(false)

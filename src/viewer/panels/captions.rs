@@ -8,7 +8,7 @@ use crate::accel::cell::Layout;
 use crate::render::Range;
 use crate::render::colormap::{difference, viridis};
 use crate::viewer::format;
-use crate::viewer::settings::Workspace;
+use crate::viewer::settings::{BoxColor, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -41,6 +41,8 @@ fn captions(state: &State) -> Vec<Caption> {
     let change = state.change.as_ref().filter(|(_, until)| *until > Instant::now()).map(|(text, _)| text.clone());
     let check = state.settings.workspace == Workspace::Check && !state.checks.caption.is_empty();
     let marked = check.then(|| state.checks.caption.clone()).or_else(|| moment(state));
+    // Their corners are taken where the picture is split.
+    let (coarse, marked) = if state.is_split() { (None, None) } else { (coarse, marked) };
     let at = |at| move |text| Caption::new(at, text);
     let above = |text| Caption { row: 1, ..Caption::new(Align2::LEFT_BOTTOM, text) };
     let lines = [
@@ -60,7 +62,14 @@ fn showing(state: &State) -> String {
         return "No boxes at this depth".to_owned();
     }
     let beyond = if c.more { " or more" } else { "" };
-    format!("Showing {} of {}{beyond} boxes", format::count(c.shown as u64), format::count(c.total as u64))
+    let color = state.settings.overlay.color;
+    let write = |x: f32| if color == BoxColor::Triangles { format::number(x.into()) } else { format::share(x.into()) };
+    let colors = c.range.map(|range| {
+        let [low, high] = range.map(write);
+        format!(", {}: {low} dark to {high} bright", color.name())
+    });
+    let (shown, total) = (format::count(c.shown as u64), format::count(c.total as u64));
+    format!("Showing {shown} of {total}{beyond} boxes{}", colors.unwrap_or_default())
 }
 
 /// What of a curve of errors is on the screen.
@@ -101,6 +110,7 @@ pub fn describe(state: &State) -> String {
         let samples = state.picture.as_ref().map_or(0, |p| p.progress.samples);
         sentences.push(format!("{structure}{depth}, {samples} samples a pixel"));
     }
+    sentences.extend(super::split::describe(state));
     sentences.extend(captions(state).into_iter().map(|caption| caption.text));
     sentences.extend(heat(state).map(|(name, range, _)| {
         let (min, max) = (format::number(range.min.into()), format::number(range.max.into()));
@@ -130,7 +140,7 @@ pub fn show(ui: &Ui, rect: Rect, state: &State) {
 }
 
 /// Text on a plate, so that it can be read over any picture.
-fn plate(ui: &Ui, at: Pos2, align: Align2, text: String) {
+pub fn plate(ui: &Ui, at: Pos2, align: Align2, text: String) {
     let palette = Palette::in_ui(ui);
     let galley = ui.painter().layout_no_wrap(text, TextStyle::Body.resolve(ui.style()), palette.text);
     let plate = align.anchor_size(at, galley.size() + vec2(2.0 * theme::GUTTER, theme::GRID));

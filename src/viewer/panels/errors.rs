@@ -3,7 +3,7 @@
 
 use eframe::egui::{Align, Color32, Layout, ProgressBar, RichText, ScrollArea, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
-use egui_plot::{Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points};
+use egui_plot::{Legend, Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points};
 
 use super::axes::log_log;
 use super::{Commands, empty, tradeoffs};
@@ -122,7 +122,9 @@ fn plot(ui: &mut Ui, state: &State, (id, of_secs, name): (&str, bool, &str), com
     let (places, palette) = (places(errors, of_secs), Palette::in_ui(ui));
     let colors: Vec<Color32> = errors.curves.iter().map(|live| marks::color(ui, live.key.entry.family)).collect();
     let height = ui.available_height();
-    let plot = log_log(id, [name, if errors.reference.is_some() { "RMSE" } else { "estimated noise" }]).height(height);
+    let plot = log_log(id, [name, if errors.reference.is_some() { "RMSE" } else { "estimated noise" }])
+        .legend(Legend::default())
+        .height(height);
     let shown = plot.show(ui, |plot| {
         if let Some(first) = places.first() {
             // Where independent samples would lead from the first point.

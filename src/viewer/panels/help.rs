@@ -1,8 +1,11 @@
 //! One page of keys and mouse.
 
+use std::borrow::Cow;
+
 use eframe::egui::{self, Grid, RichText, Ui};
 
-use super::{Commands, menu};
+use super::Commands;
+use crate::viewer::actions;
 use crate::viewer::command::Command;
 use crate::viewer::settings::Navigation;
 use crate::viewer::state::State;
@@ -14,42 +17,53 @@ pub fn show(ui: &Ui, state: &State, commands: &mut Commands) {
         return;
     }
     let mut open = true;
-    egui::Window::new("Keys and mouse").open(&mut open).collapsible(false).resizable(false).show(ui.ctx(), |ui| {
-        Grid::new("keys").num_columns(2).spacing([3.0 * theme::GUTTER, theme::GRID]).show(ui, |ui| {
-            let keys = |shortcut| ui.ctx().format_shortcut(shortcut);
-            let (orbit, pan) = match state.settings.navigation {
-                Navigation::Standard => ("Left drag", "Middle drag, or Shift and left drag"),
-                Navigation::Blender => ("Middle drag", "Shift and middle drag"),
-            };
-            let rows = [
-                (orbit.to_owned(), "Orbit around the model"),
-                (pan.to_owned(), "Move the picture"),
-                ("Click".to_owned(), "Say what is there, and mark its leaf"),
-                ("Wheel, pinch".to_owned(), "Zoom to the pointer"),
-                ("Arrow keys".to_owned(), "Orbit, when the viewport has the focus"),
-                ("+ and -".to_owned(), "Zoom, when the viewport has the focus"),
-                (keys(&menu::FRAME_ALL), "Frame the whole model"),
-                (keys(&menu::PROJECTION), "Perspective or orthographic"),
-                (format!("{}, {}", keys(&menu::CAMERA_BACK), keys(&menu::CAMERA_FORWARD)), "The view before, and forward again"),
-                (format!("{}, {}", keys(&menu::UNDO), keys(&menu::REDO)), "Take back a choice, and make it again"),
-                (keys(&menu::OPEN), "Open a file"),
-                (keys(&menu::OPEN_PATH), "Open a path or a built-in scene"),
-                (
-                    format!("{}, {}, {}", keys(&menu::VIEW), keys(&menu::COMPARE), keys(&menu::CHECK)),
-                    "The workspaces: View, Compare, Check",
-                ),
-                (keys(&menu::FULL_SCREEN), "Full screen"),
-                ("Esc".to_owned(), "Cancel what is going on"),
-                ("?".to_owned(), "This page"),
-            ];
-            for (key, what) in rows {
-                ui.label(RichText::new(key).strong());
-                ui.label(what);
-                ui.end_row();
-            }
+    let page = egui::Window::new("Keys and mouse").open(&mut open).collapsible(false).resizable(false);
+    page.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ui.ctx(), |ui| {
+        ui.horizontal_top(|ui| {
+            table(ui, "mouse", hands(state.settings.navigation).map(|(key, what)| (key.to_owned(), what.into())));
+            ui.separator();
+            let actions = actions::all(state);
+            let keyed = actions.iter().filter_map(|action| Some((action.keys.first()?, action.name.clone())));
+            let mut rows: Vec<_> = keyed.map(|(key, name)| (actions::written(ui.ctx(), key), name)).collect();
+            // Beside each other, so that the page fits the least window.
+            let rest = rows.split_off(rows.len().div_ceil(2));
+            table(ui, "keys", rows);
+            ui.separator();
+            table(ui, "more keys", rest);
         });
     });
     if !open {
         commands.push(Command::Help(false));
     }
+}
+
+/// What the mouse does, and keys that do other things in other places.
+const fn hands(navigation: Navigation) -> [(&'static str, &'static str); 11] {
+    let (orbit, pan) = match navigation {
+        Navigation::Standard => ("Left drag", "Middle drag, or Shift and left drag"),
+        Navigation::Blender => ("Middle drag", "Shift and middle drag"),
+    };
+    [
+        (orbit, "Orbit around the model"),
+        (pan, "Move the picture"),
+        ("Click", "Say what is there, and mark its leaf"),
+        ("Wheel, pinch", "Zoom to the pointer"),
+        ("Arrow keys", "Orbit, when the viewport has the focus"),
+        ("+ and -", "Zoom, when the viewport has the focus"),
+        ("Arrows in the tree", "Up and down; in and out"),
+        ("Arrows in the SAH plot", "Move the plane that is tried; change its axis"),
+        ("Arrows in the steps", "Step by step; left and right by leaves"),
+        ("Tab", "The next control"),
+        ("Esc", "Cancel what is going on"),
+    ]
+}
+
+fn table(ui: &mut Ui, id: &str, rows: impl IntoIterator<Item = (String, Cow<'static, str>)>) {
+    Grid::new(id).num_columns(2).spacing([2.0 * theme::GUTTER, theme::GRID]).show(ui, |ui| {
+        for (key, what) in rows {
+            ui.label(RichText::new(key).small().strong());
+            ui.label(RichText::new(what).small());
+            ui.end_row();
+        }
+    });
 }

@@ -4,47 +4,14 @@ use eframe::egui::{self, Align, Key, KeyboardShortcut, Layout, MenuBar, Modifier
 
 use super::Commands;
 use crate::scene::builtin;
+use crate::viewer::actions::{
+    self, BOOKMARK, CAMERA_BACK, CAMERA_FORWARD, FRAME_ALL, FULL_SCREEN, LARGER, OPEN, OPEN_PATH, PALETTE, PRESENT, PROJECTION,
+    QUIT, REDO, SAME_SIZE, SAVE, SMALLER, UNDO, key_of, scaled,
+};
 use crate::viewer::command::Command;
 use crate::viewer::format;
-use crate::viewer::settings::{Navigation, SCALE, ThemeChoice, Workspace};
+use crate::viewer::settings::{Navigation, ThemeChoice, Workspace};
 use crate::viewer::state::State;
-
-/// Keys that work everywhere, and what they do.
-pub const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
-/// Opens the field for a path.
-pub const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::L);
-/// Closes the window.
-pub const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
-/// Frames the whole model.
-pub const FRAME_ALL: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::Home);
-/// Between perspective and orthographic.
-pub const PROJECTION: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::P);
-/// Takes back the last choice.
-pub const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
-/// Makes it again.
-pub const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
-/// The camera's view before.
-pub const CAMERA_BACK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowLeft);
-/// And forward again.
-pub const CAMERA_FORWARD: KeyboardShortcut = KeyboardShortcut::new(Modifiers::ALT, Key::ArrowRight);
-/// Statistics and timings around the view.
-pub const VIEW: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F1);
-/// Curves of the picture's error around it.
-pub const COMPARE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F4);
-/// The stability lab and the model's check around it.
-pub const CHECK: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F5);
-/// In and out of full screen.
-pub const FULL_SCREEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::NONE, Key::F11);
-/// Larger, smaller, as the system has it.
-pub const LARGER: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Plus);
-/// The same key where plus needs Shift.
-const LARGER_UNSHIFTED: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Equals);
-/// Smaller.
-pub const SMALLER: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Minus);
-/// The system's size.
-pub const SAME_SIZE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Num0);
-/// One step of enlarging.
-const SCALE_STEP: f32 = 0.25;
 
 /// Draws the bar.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -54,6 +21,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Window", |ui| window(ui, state, commands));
         ui.menu_button("Help", |ui| {
+            if item(ui, "All commands", &PALETTE) {
+                commands.push(Command::Palette(true));
+            }
+            if ui.button("Terms").clicked() {
+                commands.push(Command::Terms(true));
+            }
             if ui.button("Keys and mouse").clicked() {
                 commands.push(Command::Help(true));
             }
@@ -64,7 +37,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
                 let tab = ui.add(egui::Button::selectable(chosen, workspace.name()));
                 // A menu has the same name.
                 let tab = tab.accessible_name(format!("{} workspace", workspace.name()));
-                if tab.on_hover_text(workspace.help()).clicked() {
+                let keys = actions::written(ui.ctx(), &key_of(workspace));
+                if tab.on_hover_text(format!("{} ({keys})", workspace.help())).clicked() {
                     commands.push(Command::Workspace(workspace));
                 }
             }
@@ -74,51 +48,43 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
 
 /// Does what was typed, unless a text field has the focus.
 pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
-    let typing = ctx.text_edit_focused();
-    let mut on = |shortcut: &KeyboardShortcut, command: Command| {
-        if (!typing || shortcut.modifiers.command) && ctx.input_mut(|i| i.consume_shortcut(shortcut)) {
-            commands.push(command);
+    if ctx.input(|i| i.events.iter().any(|event| matches!(event, egui::Event::Key { pressed: true, .. }))) {
+        let typing = ctx.text_edit_focused() || state.palette;
+        let actions = actions::all(state);
+        let mut keys: Vec<_> = actions.iter().flat_map(|action| action.keys.iter().map(move |key| (key, action))).collect();
+        // A key without Shift is heard with it, too, unless another one has it.
+        keys.sort_by_key(|(key, _)| !key.modifiers.shift);
+        for (key, action) in keys {
+            // A text field takes back its own typing.
+            let takes_back = matches!(action.command, Command::Undo | Command::Redo);
+            let heard = !typing || (key.modifiers.command && !takes_back);
+            if heard && ctx.input_mut(|i| i.consume_shortcut(key)) && action.possible {
+                commands.push(action.command.clone());
+            }
         }
-    };
-    let scale = state.settings.scale;
-    on(&OPEN, Command::OpenDialog);
-    on(&OPEN_PATH, Command::AskForPath(true));
-    on(&QUIT, Command::Quit);
-    if !typing {
-        // A text field takes back its own typing.
-        on(&REDO, Command::Redo);
-        on(&UNDO, Command::Undo);
     }
-    on(&CAMERA_BACK, Command::CameraBack);
-    on(&CAMERA_FORWARD, Command::CameraForward);
-    on(&FRAME_ALL, Command::FrameAll);
-    on(&PROJECTION, Command::ToggleProjection);
-    on(&VIEW, Command::Workspace(Workspace::View));
-    on(&COMPARE, Command::Workspace(Workspace::Compare));
-    on(&CHECK, Command::Workspace(Workspace::Check));
-    on(&FULL_SCREEN, Command::FullScreen);
-    on(&LARGER, Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
-    on(&LARGER_UNSHIFTED, Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
-    on(&SMALLER, Command::Scale((scale - SCALE_STEP).max(*SCALE.start())));
-    on(&SAME_SIZE, Command::Scale(1.0));
-    on(&KeyboardShortcut::new(Modifiers::SHIFT, Key::Questionmark), Command::Help(!state.help));
-    on(&KeyboardShortcut::new(Modifiers::NONE, Key::Questionmark), Command::Help(!state.help));
     escape(ctx, state, commands);
 }
 
 /// Esc ends the innermost of what is going on.
 fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
     let innermost = [
+        (state.palette, Command::Palette(false)),
         (state.help, Command::Help(false)),
+        (state.terms, Command::Terms(false)),
         (state.asking.is_some(), Command::AskForPath(false)),
         (state.measuring.is_some(), Command::CancelMeasure),
         (state.building.is_some(), Command::CancelBuild),
         (state.loading.is_some(), Command::CancelLoad),
         (state.error.is_some(), Command::Dismiss),
         (state.needing.is_some(), Command::CancelNeeds),
+        (state.causes.running.is_some(), Command::CancelCauses),
+        (state.rays.following.is_some(), Command::CancelFollow),
+        (state.beside.building.is_some(), Command::PutBeside(None)),
         (state.checks.checking.is_some(), Command::CancelCheck),
         (state.errors.making.is_some(), Command::CancelReference),
         (state.tradeoffs.running.is_some(), Command::CancelTradeoffs),
+        (state.presenting, Command::Present(false)),
         // In another workspace nobody sees that it runs.
         (state.checks.running.is_some() && state.settings.workspace == Workspace::Check, Command::CancelLab),
     ];
@@ -132,7 +98,7 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
 }
 
 fn item(ui: &mut Ui, text: &str, shortcut: &KeyboardShortcut) -> bool {
-    let keys = ui.ctx().format_shortcut(shortcut);
+    let keys = actions::written(ui.ctx(), shortcut);
     ui.add(egui::Button::new(text).shortcut_text(keys)).clicked()
 }
 
@@ -160,6 +126,9 @@ fn file(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
     });
+    if item_if(ui, state.model.is_some(), "Save workspace…", &SAVE) {
+        commands.push(Command::SaveWorkspace);
+    }
     ui.separator();
     if item(ui, "Quit", &QUIT) {
         commands.push(Command::Quit);
@@ -193,6 +162,7 @@ fn view(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if item_if(ui, state.cameras.has_forward(), "View after", &CAMERA_FORWARD) {
         commands.push(Command::CameraForward);
     }
+    bookmarks(ui, state, commands);
     ui.menu_button("Samples a pixel", |ui| {
         for samples in [1, 16, 64, 256, 1024, 4096] {
             if ui.radio(state.settings.max_samples == samples, samples.to_string()).clicked() {
@@ -209,6 +179,26 @@ fn view(ui: &mut Ui, state: &State, commands: &mut Commands) {
             if ui.radio(state.settings.navigation == choice, text).clicked() {
                 commands.push(Command::Navigation(choice));
             }
+        }
+    });
+}
+
+/// Views that were kept.
+fn bookmarks(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    ui.menu_button("Bookmarks", |ui| {
+        if item_if(ui, state.model.is_some(), "Keep this view", &BOOKMARK) {
+            commands.push(Command::AddBookmark);
+        }
+        for (i, bookmark) in state.bookmarks.iter().enumerate() {
+            ui.horizontal(|ui| {
+                if ui.button(&bookmark.name).on_hover_text("Look from there again.").clicked() {
+                    commands.push(Command::Bookmark(i));
+                }
+                let forget = ui.button("×").on_hover_text("Forget this view.");
+                if forget.accessible_name(format!("Forget {}", bookmark.name)).clicked() {
+                    commands.push(Command::DropBookmark(i));
+                }
+            });
         }
     });
 }
@@ -238,15 +228,18 @@ fn window(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.separator();
     let scale = state.settings.scale;
     if item(ui, "Larger", &LARGER) {
-        commands.push(Command::Scale((scale + SCALE_STEP).min(*SCALE.end())));
+        commands.push(Command::Scale(scaled(scale, true)));
     }
     if item(ui, "Smaller", &SMALLER) {
-        commands.push(Command::Scale((scale - SCALE_STEP).max(*SCALE.start())));
+        commands.push(Command::Scale(scaled(scale, false)));
     }
     if item(ui, "Normal size", &SAME_SIZE) {
         commands.push(Command::Scale(1.0));
     }
     ui.separator();
+    if item(ui, "Presentation", &PRESENT) {
+        commands.push(Command::Present(!state.presenting));
+    }
     if item(ui, "Full screen", &FULL_SCREEN) {
         commands.push(Command::FullScreen);
     }

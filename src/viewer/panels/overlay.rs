@@ -1,10 +1,11 @@
 //! Which boxes and planes are drawn over the picture.
 
-use eframe::egui::{Slider, Ui};
+use eframe::egui::{ComboBox, Slider, Ui};
 
 use super::{Commands, heading};
 use crate::accel::cell::Layout;
 use crate::viewer::command::Command;
+use crate::viewer::settings::BoxColor;
 use crate::viewer::state::State;
 
 /// Draws the panel.
@@ -47,6 +48,16 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
     }
+    ui.checkbox(&mut s.subtree_only, "Selected cell only").on_hover_text("Draw the boxes in the selected cell alone.");
+    ui.horizontal(|ui| {
+        let label = ui.label("Colour");
+        let combo = ComboBox::from_id_salt("box color").selected_text(s.color.label()).show_ui(ui, |ui| {
+            for color in BoxColor::ALL {
+                ui.selectable_value(&mut s.color, color, color.label());
+            }
+        });
+        combo.response.labelled_by(label.id).on_hover_text("What the colours of boxes stand for.");
+    });
     ui.checkbox(&mut s.hidden_lines, "Hidden lines").on_hover_text("Lines behind the surface, thin and dashed.");
     if s != before {
         commands.push(Command::Overlay(s));

@@ -2,7 +2,7 @@
 
 use eframe::egui::{CollapsingHeader, RichText, Ui};
 
-use super::{Commands, bars, empty, fact, heading, needs, prediction};
+use super::{Commands, bars, empty, fact, findings, heading, needs, prediction};
 use crate::accel::stats::{LEAF_SIZES, Stats};
 use crate::viewer::format;
 use crate::viewer::kept::Built;
@@ -29,6 +29,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let triangles = state.model.as_ref().map_or(0, |m| m.geometry.stored_live());
     figures(ui, stats, triangles);
     traversal(ui, state);
+    ui.separator();
+    findings::show(ui, state, commands);
+    ui.separator();
     prediction::show(ui, state, built, commands);
     histograms(ui, built, stats);
     memory(ui, stats, triangles);

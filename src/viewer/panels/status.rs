@@ -45,5 +45,15 @@ fn doing(state: &State) -> Option<String> {
         let now = building.job.progress.snapshot();
         return Some(format!("Building {}{}", building.key.entry.name, share(now.fraction)));
     }
+    if let Some(building) = &state.beside.building {
+        let now = building.job.progress.snapshot();
+        return Some(format!("Building {} beside{}", building.key.entry.name, share(now.fraction)));
+    }
+    if let Some(job) = &state.rays.following {
+        return Some(format!("Following the ray{}", share(job.progress.snapshot().fraction)));
+    }
+    if state.tree.outlining.is_some() {
+        return Some("Listing the cells".to_owned());
+    }
     state.loading.as_ref().map(|(_, job)| format!("Loading{}", share(job.progress.snapshot().fraction)))
 }

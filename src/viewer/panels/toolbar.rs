@@ -4,11 +4,12 @@ use eframe::egui::{Button, ComboBox, DragValue, Slider, Ui};
 
 use super::Commands;
 use crate::accel::cell::Layout;
-use crate::accel::registry;
+use crate::accel::registry::{self, Entry};
 use crate::geometry::Axis;
 use crate::render::sampler::SamplerKind;
 use crate::render::{Curve, Mode};
 use crate::viewer::command::Command;
+use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
 use crate::viewer::theme;
 
@@ -21,6 +22,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             light(ui, state, commands);
         }
         depth(ui, state, commands);
+        if state.settings.workspace == Workspace::Compare && state.settings.mode != Mode::Path {
+            beside(ui, state, commands);
+        }
     };
     if ui.available_width() >= theme::ONE_ROW {
         ui.horizontal(|ui| {
@@ -47,7 +51,7 @@ fn structure(ui: &mut Ui, state: &State, commands: &mut Commands) {
 
 fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let chosen = state.settings.mode;
-    let combo = ComboBox::from_id_salt("mode").selected_text(chosen.label()).show_ui(ui, |ui| {
+    let combo = ComboBox::from_id_salt("mode").height(theme::LONG_MENU).selected_text(chosen.label()).show_ui(ui, |ui| {
         for mode in Mode::ALL {
             if ui.selectable_label(mode == chosen, mode.label()).on_hover_text(mode.help()).clicked() {
                 commands.push(Command::Mode(mode));
@@ -89,6 +93,32 @@ fn light(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
     });
     combo.response.accessible_name("Sampler").on_hover_text("The numbers that samples are made of. All structures get the same.");
+}
+
+/// Which structure traces the right part of a split picture.
+fn beside(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let chosen = state.beside.chosen;
+    let combo = ComboBox::from_id_salt("beside").width(26.0 * theme::GRID).height(theme::LONG_MENU);
+    let name = |entry: &Entry| format!("and {}", entry.name);
+    let combo = combo.selected_text(chosen.map_or("No second".to_owned(), name)).show_ui(ui, |ui| {
+        if ui.selectable_label(chosen.is_none(), "No second").clicked() {
+            commands.push(Command::PutBeside(None));
+        }
+        for entry in registry::ALL.iter().filter(|entry| entry.id != state.settings.entry().id) {
+            if ui.selectable_label(chosen.is_some_and(|chosen| chosen.id == entry.id), name(entry)).clicked() {
+                commands.push(Command::PutBeside(Some(entry.id)));
+            }
+        }
+    });
+    let help = "Split the picture: the right part is traced through this structure, the same view in the same colours.";
+    combo.response.accessible_name("Second structure").on_hover_text(help);
+    if state.is_split() {
+        let mut percent = 100.0 * state.beside.divider;
+        let field = DragValue::new(&mut percent).range(0.0..=100.0).fixed_decimals(0).suffix(" %");
+        if ui.add(field).accessible_name("Place of the divider").on_hover_text("Where the right part begins.").changed() {
+            commands.push(Command::Divider(percent / 100.0));
+        }
+    }
 }
 
 /// A grid has no depth: its cells are looked at in layers.

@@ -1,8 +1,8 @@
 //! Quality against its cost: a point for each variant, or for each test of triangles or boxes in it; those that no other beats at both are
 //! joined by a line.
 
-use eframe::egui::{Align, Button, Color32, ComboBox, Label, Layout, ProgressBar, RichText, Ui};
-use egui_plot::{Line, MarkerShape, PlotPoint, PlotPoints, Points, Text};
+use eframe::egui::{Align, Align2, Button, Color32, ComboBox, Label, Layout, ProgressBar, RichText, Ui};
+use egui_plot::{Line, MarkerShape, PlotPoint, PlotPoints, PlotUi, Points, Text};
 
 use super::axes::log_log;
 use super::{Commands, empty};
@@ -65,6 +65,8 @@ struct Spot {
     at: (f64, f64),
 }
 
+/// Names written beside the pointer, at most.
+const NAMES: usize = 4;
 /// Where nothing is wrong there is no logarithm: drawn below the least that is.
 const NONE: f64 = 1.0;
 
@@ -128,9 +130,9 @@ pub fn show(ui: &mut Ui, state: &State) {
     let best = front(&spots.iter().map(|spot| spot.at).collect::<Vec<_>>());
     let help = if trade.plot == Plot::Intersection {
         "Circles are watertight, crosses fast, diamonds exact tests of triangles. Squares are tests of boxes, in a plain tree of the \
-         boxes of bvh with the watertight test. Nothing wrong is drawn at 1."
+         boxes of bvh with the watertight test. Nothing wrong is drawn at 1. Joined are those that nobody beats at both; point at a mark for its name."
     } else {
-        "Filled points are beaten by nobody at both. Brute force, far above all others, is not drawn."
+        "Filled points, joined by a line, are beaten by nobody at both; point at another for its name. Brute force, far above all others, is not drawn."
     };
     ui.label(RichText::new(help).small().color(palette.dim));
     let missing = trade.rows.iter().filter_map(|row| Some(format!("{}: {}", row.name, row.error.as_ref()?)));
@@ -148,9 +150,20 @@ pub fn show(ui: &mut Ui, state: &State) {
         for ((spot, color), best) in spots.iter().zip(&colors).zip(&best) {
             let points = Points::new(String::new(), vec![logs(spot)]).color(*color).shape(spot.marker);
             plot.points(points.radius(theme::GRID + f32::from(u8::from(*best))).filled(*best));
-            let [x, y] = logs(spot);
-            let text = RichText::new(format!("  {}", spot.name)).small().color(if *best { palette.text } else { palette.dim });
-            plot.text(Text::new(String::new(), PlotPoint::new(x, y), text).anchor(eframe::egui::Align2::LEFT_CENTER));
+        }
+        let label = |plot: &mut PlotUi<'_>, [x, y]: [f64; 2], name: &str, color| {
+            let text = RichText::new(format!("  {name}")).small().color(color);
+            plot.text(Text::new(String::new(), PlotPoint::new(x, y), text).anchor(Align2::LEFT_CENTER));
+        };
+        // Names of all would lie over each other.
+        for (spot, _) in spots.iter().zip(&best).filter(|(_, best)| **best) {
+            label(plot, logs(spot), &spot.name, palette.text);
+        }
+        if let Some(pointer) = plot.pointer_coordinate() {
+            let place = |[x, y]: [f64; 2]| plot.screen_from_plot(PlotPoint::new(x, y));
+            let near = |spot: &&Spot| place(logs(spot)).distance(place([pointer.x, pointer.y])) < theme::ROW * 0.5;
+            let names: Vec<&str> = spots.iter().filter(near).map(|spot| &spot.name[..]).take(NAMES).collect();
+            label(plot, [pointer.x, pointer.y], &names.join(", "), palette.accent_text);
         }
     });
 }

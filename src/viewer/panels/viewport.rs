@@ -1,11 +1,12 @@
 //! The 3D view: the picture with boxes over it, and the hands.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::Vec2;
 
-use super::{Commands, captions};
+use super::{Commands, captions, split};
 use crate::scene::Camera;
 use crate::viewer::checks::Mark;
 use crate::viewer::command::Command;
@@ -16,8 +17,8 @@ use crate::viewer::settings::{Navigation, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
-/// The name of the viewport among viewports.
-const PANE: gpu::PaneId = 0;
+/// The names of the viewport among viewports, and of the second part of a split one.
+const PANES: [gpu::PaneId; 2] = [0, 1];
 /// What an arrow key turns, in points of dragging.
 const KEY_STEP: f32 = 24.0;
 /// What a key zooms, in points of the wheel.
@@ -40,6 +41,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         ui.painter().rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Inside);
     }
     captions::show(ui, rect, state);
+    split::show(ui, rect, state, commands);
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
         commands.push(Command::Pick(in_picture(rect, at)));
     }
@@ -66,18 +68,32 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
     };
     let overlay = state.shown.as_ref().and(state.overlay.clone());
     let view = View::new(&camera, model.geometry.space(), aspect);
+    // For an audience lines are twice as wide, and everything is enlarged already.
+    let lines = if state.presenting { theme::PRESENTED_LINES / theme::PRESENTED } else { 1.0 };
     let list = DrawList {
         view,
         size_px,
-        pixels_per_point,
+        pixels_per_point: pixels_per_point * lines,
         background: palette.background.to_array(),
         base,
         overlay,
         hidden_lines: state.settings.overlay.hidden_lines,
     };
-    gpu::paint(ui.painter(), rect, PANE, list);
-    let marks: &[Mark] = if state.settings.workspace == Workspace::Check { &state.checks.marks } else { &[] };
-    rays_over::paint(&ui.painter_at(rect), rect, marks, &view, model.geometry.space(), palette);
+    match state.beside.picture.as_ref().filter(|_| state.is_split()) {
+        Some(picture) => {
+            let second = DrawList { base: Base::Picture(Arc::clone(picture)), overlay: None, ..list.clone() };
+            let [left, right] = split::halves(rect, state.beside.divider);
+            gpu::paint(&ui.painter_at(left), rect, PANES[0], list);
+            gpu::paint(&ui.painter_at(right), rect, PANES[1], second);
+        }
+        None => gpu::paint(ui.painter(), rect, PANES[0], list),
+    }
+    let marks: Cow<'_, [Mark]> = match state.settings.workspace {
+        Workspace::Check => Cow::Borrowed(&state.checks.marks),
+        Workspace::Ray => Cow::Owned(state.rays.marks()),
+        Workspace::View | Workspace::Structure | Workspace::Compare => Cow::Borrowed(&[]),
+    };
+    rays_over::paint(&ui.painter_at(rect), rect, &marks, &view, model.geometry.space(), palette);
     let (there, all) = model.raster.progress();
     if state.picture.is_none() && there < all {
         ui.ctx().request_repaint();

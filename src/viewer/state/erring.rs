@@ -99,15 +99,16 @@ impl State {
 
     /// Starts a reference of the present view; the picture rests meanwhile.
     pub(super) fn make_reference(&mut self) {
-        let (Some(model), Some(shown), Some((spp, _))) = (&self.model, &self.shown, self.errors.wanted_reference()) else {
-            return;
-        };
         if self.is_measuring() || self.is_checking() || self.size_px.contains(&0) {
             return;
         }
+        let pause = self.begin_measuring();
+        let (Some(model), Some(shown), Some((spp, _))) = (&self.model, &self.shown, self.errors.wanted_reference()) else {
+            return;
+        };
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
         let view = render::Job::new(scene, accel, self.camera, Mode::Path, Arc::clone(&model.looks));
-        match workers::reference(&self.shared, view, self.size_px, spp, self.renderer.pause()) {
+        match workers::reference(&self.shared, view, self.size_px, spp, pause) {
             Ok(job) => self.errors.making = Some((spp, job)),
             Err(e) => self.fail(format!("Can't make the reference: {e}.")),
         }

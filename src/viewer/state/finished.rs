@@ -3,9 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::State;
+use super::{Causes, State};
 use crate::accel::BuildError;
-use crate::accel::stats::SahWeights;
 use crate::job::Outcome;
 use crate::render::Mode;
 use crate::scene::texture::Detail;
@@ -14,6 +13,7 @@ use crate::viewer::history::{Choices, History, Kind};
 use crate::viewer::kept::Built;
 use crate::viewer::model::{self, Model};
 use crate::viewer::pick::Picked;
+use crate::viewer::rays::Rays;
 use crate::viewer::timings::Timings;
 use crate::viewer::workers;
 
@@ -44,7 +44,8 @@ impl State {
         let spec = self.first_camera.take();
         self.camera = CameraSpec::or_first(spec.as_ref(), &model.scene, &model.geometry, self.aspect());
         self.framed = spec.is_none().then_some((self.camera, self.size_px));
-        if let Some((camera, _)) = self.reopened.take() {
+        let reopened = self.reopened.take();
+        if let Some((camera, _)) = reopened {
             (self.camera, self.framed) = (camera, None);
         }
         (self.building, self.counting, self.collecting, self.measuring) = (None, None, None, None);
@@ -61,6 +62,19 @@ impl State {
         self.timings = Timings::default();
         (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
         self.checks.opened();
+        let ray = self.rays.asked.filter(|_| reopened.is_some());
+        if reopened.is_none() {
+            self.bookmarks.clear();
+        }
+        self.shared.give_back(self.tree.outline.take());
+        self.tree.clear();
+        self.causes = Causes::default();
+        let (beside, kind, speed) = (std::mem::take(&mut self.rays.beside), self.rays.kind, self.rays.speed);
+        let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
+        self.shared.give_back(before.columns);
+        self.awaited = None;
+        self.forget_beside();
+        self.bring_back();
         if self.checks.selected.is_some_and(|cell| model::case_name(cell.case) == name) {
             self.checks.mark_case(&model.rays);
         }
@@ -223,8 +237,7 @@ impl State {
                     && self.curves.as_ref().is_none_or(|c| c.0 != cell.id)
                     && !self.is_measuring()
                 {
-                    let weights = SahWeights::of(&shown.key.params);
-                    let job = workers::curves(&self.shared, Arc::clone(&shown.accel), cell, weights);
+                    let job = workers::curves(&self.shared, shown, cell);
                     self.curving = job.ok().map(|job| (cell.id, job));
                 }
             }

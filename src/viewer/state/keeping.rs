@@ -34,6 +34,9 @@ impl State {
         self.settings.memory_mib = mib;
         let limit = mib.map_or(self.machine_bytes / 2, |mib| mib.saturating_mul(1 << 20));
         self.shared.budget.set_limit(limit);
+        if self.tree.failed.is_some() {
+            self.tree.clear(); // there may be room for it now
+        }
         let (mut left, shown) = (self.shared.budget.used(), self.shown.as_ref().map(|built| &built.key));
         while left > limit
             && let Some(oldest) = self.kept.take_oldest(shown)
@@ -49,13 +52,14 @@ impl State {
     }
 
     pub(super) fn measure_needs(&mut self) {
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         if self.is_checking() || self.is_measuring() {
             return;
         }
+        let pause = self.begin_measuring();
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         let [width, height] = self.size_px;
         let size = [COLUMNS, (COLUMNS * height).div_ceil(width.max(1)).clamp(1, COLUMNS * 2)];
-        match workers::needs(&self.shared, (model, shown), (self.camera, size), self.renderer.pause()) {
+        match workers::needs(&self.shared, (model, shown), (self.camera, size), pause) {
             Ok(job) => self.needing = Some(job),
             Err(e) => self.fail(format!("Can't measure: {e}.")),
         }

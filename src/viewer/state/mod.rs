@@ -1,19 +1,30 @@
 //! What the window knows, and how commands change it; `finished` is what finished jobs change, and
 //! `refresh` what is asked for anew when the view changes. No drawing here.
 
+mod besides;
+mod bookmarks;
+mod causes;
 mod checking;
 mod dialog;
 mod erring;
+mod exploring;
 mod finished;
+mod following;
 mod keeping;
 mod refresh;
+mod saving;
 mod trading;
+
+pub use bookmarks::Bookmark;
+pub use causes::Causes;
+use saving::Saving;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
+use super::beside::{Beside, Pauses};
 use super::checks::Checks;
 use super::command::Command;
 use super::dialogs::FileDialog;
@@ -26,17 +37,19 @@ use super::model::{Instances, Model};
 use super::navigation;
 use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
-use super::settings::Settings;
+use super::rays::Rays;
+use super::settings::{Settings, Workspace};
 use super::timings::Timings;
 use super::tradeoffs::Tradeoffs;
+use super::tree::Tree;
 use super::workers::{
     self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Needing, Picking, Plan, Predicting, Shared,
 };
+use super::workspace_file::WorkspaceFile;
 use crate::accel::{CellId, cell};
 use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
-use crate::render::progressive::Pause;
 use crate::render::sampler::SamplerKind;
 use crate::render::{self, Mode, Picture, Range, Renderer, Tone};
 use crate::scene::texture::Detail;
@@ -78,6 +91,18 @@ pub struct State {
     pub errors: Errors,
     /// Quality against its cost, there.
     pub tradeoffs: Tradeoffs,
+    /// The cells of the shown structure, in the Structure workspace.
+    pub tree: Tree,
+    /// Why rays are slow in the shown structure.
+    pub causes: Causes,
+    /// The second structure of a split picture.
+    pub beside: Beside,
+    /// What its renderer was last asked for.
+    requested_beside: Option<Asked>,
+    /// Threads that trace.
+    trace_pool: Pool,
+    /// The ray of the Ray workspace.
+    pub rays: Rays,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -92,8 +117,20 @@ pub struct State {
     pub change: Option<(String, Instant)>,
     /// The field for a path is open, with this in it.
     pub asking: Option<String>,
+    /// The palette of commands is open.
+    pub palette: bool,
     /// The page of keys is open.
     pub help: bool,
+    /// The page of terms is open.
+    pub terms: bool,
+    /// Everything is larger and the panels are away, for an audience.
+    pub presenting: bool,
+    /// The workspace file that is saved or opened.
+    saving: Saving,
+    /// A cell to select once its structure is there, by the cells from the root to it.
+    awaited: Option<(Key, Vec<CellId>)>,
+    /// Views of the open model that were kept.
+    pub bookmarks: Vec<Bookmark>,
     /// The first and the last depth that were chosen, whether or not the shown structure is as deep.
     chosen_depths: (u32, u32),
     /// The viewport in pixels, as it was last drawn.
@@ -115,7 +152,7 @@ pub struct State {
     /// The view to go on with when the same model was opened anew, and what became of instances before.
     reopened: Option<(Camera, Instances)>,
     /// Keeps the renderer at rest while nobody sees the window.
-    hidden: Option<Pause>,
+    hidden: Option<Pauses>,
     /// Bytes of memory that the machine has.
     pub machine_bytes: u64,
     kept: Kept,
@@ -192,7 +229,7 @@ impl State {
         let wake = Arc::clone(&shared.wake);
         // One core is left to the window, so that it always finds one.
         let pool = Pool::new("trace", crate::sys::cores().saturating_sub(1).max(1));
-        let renderer = Renderer::new(pool, move || wake())?;
+        let renderer = Renderer::new(pool.clone(), move || wake())?;
         Ok(Self {
             chosen_depths: (settings.overlay.from_depth, settings.overlay.depth),
             settings,
@@ -209,6 +246,12 @@ impl State {
             checks: Checks::default(),
             errors: Errors::default(),
             tradeoffs: Tradeoffs::default(),
+            tree: Tree::default(),
+            causes: Causes::default(),
+            beside: Beside::default(),
+            requested_beside: None,
+            trace_pool: pool.clone(),
+            rays: Rays::default(),
             picked: None,
             error: None,
             answer: None,
@@ -216,7 +259,13 @@ impl State {
             choices: History::default(),
             change: None,
             asking: None,
+            palette: false,
             help: false,
+            terms: false,
+            presenting: false,
+            saving: Saving::default(),
+            awaited: None,
+            bookmarks: Vec::new(),
             size_px: [0, 0],
             graphics,
             loading: None,
@@ -262,7 +311,11 @@ impl State {
 
     /// Whether work that must not be disturbed runs.
     pub fn is_measuring(&self) -> bool {
-        self.measuring.is_some() || self.needing.is_some() || self.errors.making.is_some() || self.tradeoffs.running.is_some()
+        self.measuring.is_some()
+            || self.needing.is_some()
+            || self.causes.running.is_some()
+            || self.errors.making.is_some()
+            || self.tradeoffs.running.is_some()
     }
 
     /// Whether the lab runs or the model is checked, which would disturb a measurement.
@@ -290,6 +343,10 @@ impl State {
             || self.is_measuring()
             || self.counting.is_some()
             || self.predicting.is_some()
+            || self.is_exploring()
+            || self.rays.following.is_some()
+            || self.saving.is_busy()
+            || self.awaited.is_some()
             || drawing
     }
 
@@ -333,6 +390,8 @@ impl State {
             Command::Camera(camera) => self.look(camera, Kind::Hand),
             Command::CameraBack => self.camera = self.cameras.back(self.camera).unwrap_or(self.camera),
             Command::CameraForward => self.camera = self.cameras.forward(self.camera).unwrap_or(self.camera),
+            // What is timed shall not be disturbed by a build.
+            Command::Undo | Command::Redo | Command::Bookmark(_) if self.is_measuring() => {}
             Command::Undo => {
                 let before = self.choices.back(Choices::of(&self.settings, self.picked.as_ref()));
                 self.restore(before);
@@ -346,6 +405,26 @@ impl State {
                 let picked = self.picked.clone().map(|p| Picked { level: level.min(p.path.len().saturating_sub(1)), ..p });
                 self.select(picked);
             }
+            Command::SelectRow(row) => self.select_row(row),
+            Command::OpenRow(row, open) => self.open_row(row, open),
+            Command::OpenBelow(row) => self.open_below(row),
+            Command::TryPlane(plane) => self.try_plane(plane),
+            Command::FindCauses => self.find_causes(),
+            Command::CancelCauses => self.causes.running = None,
+            Command::ShowCause(row) => self.show_cause(row),
+            Command::RayKind(kind) => {
+                self.rays.kind = kind;
+                self.follow_again();
+            }
+            Command::RayText(text) => self.follow_text(&text),
+            Command::CancelFollow => self.rays.following = None,
+            Command::Beside(id, beside) => self.follow_beside(id, beside),
+            Command::Step(column, step) => self.go_to_step(column, step),
+            Command::Play(play) => self.play(play),
+            Command::PlaySpeed(speed) => self.rays.speed = speed,
+            Command::HideOutcome(hide) => (self.settings.hide_outcome, self.tree.revealed) = (hide, false),
+            Command::Reveal => self.tree.revealed = true,
+            Command::FrameSelected => self.frame_selected(),
             Command::FrameAll => self.frame_all(),
             Command::ToggleProjection => self.look(navigation::toggle_projection(&self.camera), Kind::Single),
             Command::MaxSamples(n) => self.settings.max_samples = n.max(1),
@@ -354,7 +433,14 @@ impl State {
             Command::MeasureNeeds => self.measure_needs(),
             Command::CancelNeeds => self.needing = None,
             Command::Instances(instances) => self.reopen(instances),
-            Command::Workspace(workspace) => self.settings.workspace = workspace,
+            Command::Workspace(workspace) => {
+                self.settings.workspace = workspace;
+                self.rays.playing = None;
+                if workspace == Workspace::Ray && self.rays.columns.is_empty() && self.rays.following.is_none() {
+                    self.follow_again();
+                }
+                self.light();
+            }
             Command::RunLab => self.run_lab(),
             Command::CancelLab => self.checks.running = None,
             Command::OpenCase(cell) => self.open_case(cell),
@@ -377,14 +463,31 @@ impl State {
             Command::Theme(theme) => self.settings.theme = theme,
             Command::Navigation(navigation) => self.settings.navigation = navigation,
             Command::Scale(scale) => self.settings.scale = scale,
+            Command::Palette(open) => self.palette = open,
             Command::Help(open) => self.help = open,
+            Command::Terms(open) => self.terms = open,
+            Command::Present(present) => self.presenting = present,
+            Command::PutBeside(id) => self.put_beside(id),
+            Command::Divider(at) => self.beside.divider = at.clamp(0.0, 1.0),
+            Command::SaveWorkspace => self.ask_where_to_save(),
+            Command::AddBookmark => self.add_bookmark(),
+            Command::Bookmark(at) => self.go_to_bookmark(at),
+            Command::DropBookmark(at) => {
+                if at < self.bookmarks.len() {
+                    self.bookmarks.remove(at);
+                }
+            }
             Command::ResetLayout | Command::FullScreen | Command::Quit => {}
         }
     }
 
     fn pick(&mut self, at: Vec2) {
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         let ray = self.camera.ray(&self.camera.frame(), at, self.aspect());
+        self.tree.selecting = None;
+        if self.settings.workspace == Workspace::Ray {
+            self.follow(ray);
+        }
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), Arc::clone(&shown.accel), ray).ok();
     }
 
@@ -397,6 +500,7 @@ impl State {
     /// Brings choices back that were left.
     fn restore(&mut self, choices: Option<Choices>) {
         let Some(choices) = choices else { return };
+        (self.picking, self.tree.selecting) = (None, None);
         choices.restore(&mut self.settings);
         self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
         self.choose();
@@ -409,9 +513,15 @@ impl State {
 
     /// The selected box is drawn with the others, so they are collected anew.
     fn select(&mut self, picked: Option<Picked>) {
+        let id = |picked: &Option<Picked>| picked.as_ref().and_then(Picked::selected).map(|cell| cell.id);
+        if id(&self.picked) != id(&picked) {
+            (self.tree.tried, self.tree.revealed) = (None, false);
+        }
         self.picked = picked;
         self.collected_for = None;
-        (self.curves, self.curving) = (None, None);
+        self.curving = None;
+        self.shared.give_back(self.curves.take()); // they may be large
+        self.follow_selection();
     }
 
     fn frame_all(&mut self) {
@@ -422,6 +532,10 @@ impl State {
     }
 
     fn open(&mut self, model: String) {
+        if WorkspaceFile::is_one(&model) {
+            return self.open_workspace(model);
+        }
+        self.saving.forget();
         self.asking = None;
         self.error = None;
         self.checks.checking = None;
@@ -436,7 +550,7 @@ impl State {
     /// Tells whether anybody can see the window: what nobody sees is not traced.
     pub fn hide(&mut self, hidden: bool) {
         if hidden != self.hidden.is_some() {
-            self.hidden = hidden.then(|| self.renderer.pause());
+            self.hidden = hidden.then(|| self.pause_rendering());
         }
     }
 
@@ -483,7 +597,14 @@ impl State {
         self.change = None;
         self.picking = None;
         self.select(None);
+        self.shared.give_back(self.tree.outline.take()); // it may be large
+        self.tree.clear();
+        self.causes = Causes::default();
+        self.rays.clear();
         self.shown = Some(built);
+        if self.settings.workspace == Workspace::Ray {
+            self.follow_again();
+        }
         // A depth that the new structure does not have would show nothing.
         self.clamp_depth();
     }
@@ -522,7 +643,8 @@ impl State {
             return;
         }
         let Some(plan) = self.plan() else { return };
-        match workers::measure_all(&self.shared, plan, self.renderer.pause()) {
+        let pause = self.begin_measuring();
+        match workers::measure_all(&self.shared, plan, pause) {
             Ok(job) => self.measuring = Some(job),
             Err(e) => self.fail(format!("Can't measure: {e}.")),
         }
@@ -531,8 +653,12 @@ impl State {
     /// Takes in what jobs have finished, and starts what follows from it. Called once a frame.
     pub fn advance(&mut self) {
         self.advance_dialog();
+        self.advance_saving();
         self.advance_load();
         self.advance_build();
+        self.advance_causes();
+        self.advance_outline();
+        self.advance_following();
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();
@@ -541,6 +667,7 @@ impl State {
         self.advance_check();
         self.follow_viewport();
         self.refresh_picture();
+        self.advance_beside();
         self.advance_errors();
         self.advance_tradeoffs();
         self.advance_statistics();

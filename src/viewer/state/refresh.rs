@@ -10,6 +10,7 @@ use crate::render::{self, Picture, Request};
 use crate::viewer::gpu::{Overlay, View};
 use crate::viewer::overlay::Wanted;
 use crate::viewer::pick::Picked;
+use crate::viewer::settings::BoxColor;
 use crate::viewer::{format, workers};
 
 impl State {
@@ -103,8 +104,8 @@ impl State {
                 Outcome::Done(Ok(mut collected)) => {
                     self.generation += 1;
                     let overlay = std::mem::take(&mut collected.overlay);
-                    let selected = self.picked.as_ref().and_then(Picked::selected_box);
-                    self.overlay = Some(Arc::new(Overlay { generation: self.generation, selected, ..overlay }));
+                    let (tried, selected) = (self.tried_plane(), self.lit_box());
+                    self.overlay = Some(Arc::new(Overlay { generation: self.generation, selected, tried, ..overlay }));
                     self.collected = collected;
                     self.collected_for = Some((wanted, key));
                 }
@@ -113,15 +114,25 @@ impl State {
         }
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         let view = View::new(&self.camera, model.geometry.space(), self.aspect());
-        let wanted =
-            Wanted { settings: self.settings.overlay, view, size_px: self.size_px, limit: self.graphics.comfortable_boxes() };
+        let settings = self.settings.overlay;
+        let selected = self.picked.as_ref().and_then(Picked::selected).copied();
+        let (needs_rows, outline) = (settings.subtree_only || settings.color != BoxColor::Depth, self.tree.outline.clone());
+        let wanted = Wanted {
+            settings,
+            view,
+            size_px: self.size_px,
+            limit: self.graphics.comfortable_boxes(),
+            // A row whose cell is on its way is not that of the selected cell.
+            top: selected.zip(self.tree.selected).filter(|_| settings.subtree_only && self.tree.selecting.is_none()),
+            numbered: needs_rows && outline.is_some(),
+        };
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
         self.overlay_is_current = current;
         let seen = self.seen.as_ref() == Some(&shown.key);
         if current || !seen || self.collecting.is_some() || self.is_measuring() {
             return;
         }
-        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), wanted.clone()) {
+        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), outline, wanted.clone()) {
             self.collecting = Some((wanted, shown.key.clone(), job));
         }
     }

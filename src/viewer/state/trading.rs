@@ -15,16 +15,17 @@ use crate::viewer::workers;
 impl State {
     /// Starts measuring every variant on the present view, with what structures are set to.
     pub(super) fn measure_tradeoffs(&mut self) {
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         if self.is_measuring() || self.is_checking() || self.size_px.contains(&0) {
             return;
         }
+        let pause = self.begin_measuring();
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         let entries: Vec<_> = registry::ALL.iter().map(|entry| (entry, self.settings.params_of(entry))).collect();
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
         let view = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
         let (sender, receiver) = channel();
         self.building = None;
-        match workers::tradeoffs(&self.shared, Variant::all_of(&entries), view, self.size_px, (sender, self.renderer.pause())) {
+        match workers::tradeoffs(&self.shared, Variant::all_of(&entries), view, self.size_px, (sender, pause)) {
             Ok(job) => {
                 self.tradeoffs.rows.clear();
                 self.tradeoffs.running = Some((job, receiver));

@@ -6,18 +6,29 @@ use eframe::egui::Color32;
 
 pub use crate::render::colormap::viridis;
 
-/// Where a level lies on viridis: from 0.35 (the darkest that lines can be told on the dark
-/// background) to 1 over the levels that are shown, one even step a level.
+/// Where a level lies on viridis: from the darkest that is used to 1 over the levels that are shown, one even step a level.
 pub fn depth_position(level: u32, shown: &RangeInclusive<u32>) -> f32 {
     let (first, last) = (*shown.start(), *shown.end());
     let t = if last > first { level.clamp(first, last).abs_diff(first) as f32 / (last - first) as f32 } else { 0.5 };
-    0.35 + 0.65 * t
+    LEAST + (1.0 - LEAST) * t
 }
 
 /// The colour of a level of a tree when the levels `shown` are on the screen.
 pub fn depth_color(level: u32, shown: &RangeInclusive<u32>) -> Color32 {
     opaque(viridis(depth_position(level, shown)))
 }
+
+/// The colour of an amount between two others: in even steps, or in even ratios where one is more than ten times the other.
+/// It begins where lines can be told on the dark background.
+pub fn amount_color(value: f32, [low, high]: [f32; 2]) -> Color32 {
+    let even = |x: f32| if low > 0.0 && high > 10.0 * low { x.max(low).ln() } else { x };
+    let (value, low, high) = (even(value), even(low), even(high));
+    let t = if high > low { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 };
+    opaque(viridis(LEAST + (1.0 - LEAST) * t))
+}
+
+/// The darkest that lines can be told on the dark background.
+const LEAST: f32 = 0.35;
 
 /// The colour of a signed difference in -1..=1: blue below, white at 0, orange above.
 pub fn difference(t: f32) -> Color32 {

@@ -124,7 +124,7 @@ fn flat_boxes_around_flat_triangles() {
     list.view = View::new(&camera.reframed(geometry.world_bounds(), aspect), geometry.space(), aspect);
     let boxes = (0..=4).flat_map(|at| colored(&boxes(&geometry, at), at, 0..=4)).collect();
     let selected = Some(BoxInstance::new(&self::boxes(&geometry, 2)[1], [255; 4]));
-    list.overlay = Some(Arc::new(Overlay { generation: 1, boxes, planes: Vec::new(), selected }));
+    list.overlay = Some(Arc::new(Overlay { generation: 1, boxes, selected, ..Overlay::default() }));
     let image = gpu.shot("look_lecture", &list);
     // The root's box is whole: its upper edge has one colour all along.
     let root = geometry.bounds();

@@ -1,0 +1,349 @@
+//! Everything that can be done in the window, by name: what the palette searches, the keys do, and the page of keys lists.
+
+use std::borrow::Cow;
+
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+use super::command::Command;
+use super::panels::toolbar;
+use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, ThemeChoice, Workspace};
+use super::state::State;
+use super::tradeoffs::Plot;
+use crate::accel::outline::Rank;
+use crate::accel::registry;
+use crate::render::Mode;
+use crate::render::sampler::SamplerKind;
+use crate::scene::builtin;
+
+/// One thing that can be done.
+#[derive(Clone, Debug)]
+pub struct Action {
+    /// What it belongs to.
+    pub group: &'static str,
+    /// What it does.
+    pub name: Cow<'static, str>,
+    /// Keys that do it.
+    pub keys: Vec<KeyboardShortcut>,
+    /// What is sent for it.
+    pub command: Command,
+    /// Whether there is anything to do now.
+    pub possible: bool,
+}
+
+const fn with(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(modifiers, key)
+}
+
+/// Opens a file.
+pub const OPEN: KeyboardShortcut = with(Modifiers::COMMAND, Key::O);
+/// Opens the field for a path.
+pub const OPEN_PATH: KeyboardShortcut = with(Modifiers::COMMAND, Key::L);
+/// Saves the whole state of the window.
+pub const SAVE: KeyboardShortcut = with(Modifiers::COMMAND, Key::S);
+/// Closes the window.
+pub const QUIT: KeyboardShortcut = with(Modifiers::COMMAND, Key::Q);
+/// Frames the whole model.
+pub const FRAME_ALL: KeyboardShortcut = with(Modifiers::NONE, Key::Home);
+/// Frames the selected cell.
+pub const FRAME_SELECTED: KeyboardShortcut = with(Modifiers::NONE, Key::F);
+/// Between perspective and orthographic.
+pub const PROJECTION: KeyboardShortcut = with(Modifiers::NONE, Key::P);
+/// Takes back the last choice.
+pub const UNDO: KeyboardShortcut = with(Modifiers::COMMAND, Key::Z);
+/// Makes it again.
+pub const REDO: KeyboardShortcut = with(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+/// The camera's view before.
+pub const CAMERA_BACK: KeyboardShortcut = with(Modifiers::ALT, Key::ArrowLeft);
+/// And forward again.
+pub const CAMERA_FORWARD: KeyboardShortcut = with(Modifiers::ALT, Key::ArrowRight);
+/// In and out of full screen.
+pub const FULL_SCREEN: KeyboardShortcut = with(Modifiers::NONE, Key::F11);
+/// Larger.
+pub const LARGER: KeyboardShortcut = with(Modifiers::COMMAND, Key::Plus);
+/// The same key where plus needs Shift.
+const LARGER_UNSHIFTED: KeyboardShortcut = with(Modifiers::COMMAND, Key::Equals);
+/// Smaller.
+pub const SMALLER: KeyboardShortcut = with(Modifiers::COMMAND, Key::Minus);
+/// The system's size.
+pub const SAME_SIZE: KeyboardShortcut = with(Modifiers::COMMAND, Key::Num0);
+/// Opens the palette.
+pub const PALETTE: KeyboardShortcut = with(Modifiers::COMMAND, Key::P);
+/// For an audience.
+pub const PRESENT: KeyboardShortcut = with(Modifiers::NONE, Key::F10);
+/// Keeps the view.
+pub const BOOKMARK: KeyboardShortcut = with(Modifiers::COMMAND, Key::D);
+/// The page of keys, on keyboards where it needs Shift and others.
+const HELP: [KeyboardShortcut; 2] = [with(Modifiers::NONE, Key::Questionmark), with(Modifiers::SHIFT, Key::Questionmark)];
+/// A level deeper and higher.
+const DEEPER: [KeyboardShortcut; 2] = [with(Modifiers::NONE, Key::CloseBracket), with(Modifiers::NONE, Key::OpenBracket)];
+/// Boxes on and off.
+const BOXES: KeyboardShortcut = with(Modifiers::NONE, Key::B);
+
+/// One step of enlarging.
+const SCALE_STEP: f32 = 0.25;
+
+/// The key of a workspace.
+pub const fn key_of(workspace: Workspace) -> KeyboardShortcut {
+    let key = match workspace {
+        Workspace::View => Key::F1,
+        Workspace::Structure => Key::F2,
+        Workspace::Ray => Key::F3,
+        Workspace::Compare => Key::F4,
+        Workspace::Check => Key::F5,
+    };
+    with(Modifiers::NONE, key)
+}
+
+/// A key as it is written on the keyboard.
+pub fn written(ctx: &Context, key: &KeyboardShortcut) -> String {
+    let signs = [("OpenBracket", "["), ("CloseBracket", "]"), ("Questionmark", "?"), ("Plus", "+"), ("Minus", "-")];
+    signs.into_iter().fold(ctx.format_shortcut(key), |text, (name, sign)| text.replace(name, sign))
+}
+
+/// How large everything is after one step.
+pub fn scaled(scale: f32, up: bool) -> f32 {
+    if up { (scale + SCALE_STEP).min(*SCALE.end()) } else { (scale - SCALE_STEP).max(*SCALE.start()) }
+}
+
+/// Collects actions.
+struct List {
+    group: &'static str,
+    all: Vec<Action>,
+}
+
+impl List {
+    fn add(&mut self, name: impl Into<Cow<'static, str>>, command: Command) -> &mut Action {
+        let action = Action { group: self.group, name: name.into(), keys: Vec::new(), command, possible: true };
+        self.all.push(action);
+        let last = self.all.len() - 1;
+        &mut self.all[last]
+    }
+}
+
+impl Action {
+    fn key(&mut self, key: KeyboardShortcut) -> &mut Self {
+        self.keys.push(key);
+        self
+    }
+
+    fn if_possible(&mut self, possible: bool) -> &mut Self {
+        self.possible = possible;
+        self
+    }
+}
+
+/// All of them, as things are.
+pub fn all(state: &State) -> Vec<Action> {
+    let mut list = List { group: "File", all: Vec::new() };
+    file(&mut list, state);
+    list.group = "Edit";
+    list.add("Undo", Command::Undo).key(UNDO).if_possible(state.choices.has_back());
+    list.add("Redo", Command::Redo).key(REDO).if_possible(state.choices.has_forward());
+    list.group = "View";
+    view(&mut list, state);
+    list.group = "Boxes";
+    boxes(&mut list, state);
+    list.group = "Structure";
+    structure(&mut list, state);
+    list.group = "Ray";
+    ray(&mut list, state);
+    list.group = "Measure";
+    measure(&mut list, state);
+    list.group = "Window";
+    window(&mut list, state);
+    list.all
+}
+
+fn file(list: &mut List, state: &State) {
+    list.add("Open…", Command::OpenDialog).key(OPEN);
+    list.add("Open a path…", Command::AskForPath(true)).key(OPEN_PATH);
+    for model in &state.settings.recent {
+        list.add(format!("Open {model}"), Command::Open(model.clone()));
+    }
+    for scene in builtin::all().iter() {
+        let model = format!("{}{}", builtin::SCHEME, scene.id);
+        if !state.settings.recent.contains(&model) {
+            list.add(format!("Open {model}"), Command::Open(model));
+        }
+    }
+    list.add("Save workspace…", Command::SaveWorkspace).key(SAVE).if_possible(state.model.is_some());
+    list.add("Quit", Command::Quit).key(QUIT);
+}
+
+fn view(list: &mut List, state: &State) {
+    let open = state.model.is_some();
+    list.add("Frame all", Command::FrameAll).key(FRAME_ALL).if_possible(open);
+    let selected = state.picked.as_ref().is_some_and(|picked| picked.selected().is_some());
+    list.add("Frame the selected cell", Command::FrameSelected).key(FRAME_SELECTED).if_possible(selected);
+    list.add("Perspective or orthographic", Command::ToggleProjection).key(PROJECTION).if_possible(open);
+    list.add("Keep this view as a bookmark", Command::AddBookmark).key(BOOKMARK).if_possible(open);
+    for (i, bookmark) in state.bookmarks.iter().enumerate() {
+        list.add(format!("Go to {}", bookmark.name), Command::Bookmark(i));
+    }
+    list.add("View before", Command::CameraBack).key(CAMERA_BACK).if_possible(state.cameras.has_back());
+    list.add("View after", Command::CameraForward).key(CAMERA_FORWARD).if_possible(state.cameras.has_forward());
+    for mode in Mode::ALL {
+        list.add(format!("Picture: {}", mode.label()), Command::Mode(mode)).if_possible(mode != state.settings.mode);
+    }
+    for sampler in SamplerKind::ALL {
+        let path = state.settings.mode == Mode::Path && sampler != state.settings.sampler;
+        list.add(format!("Sampler: {}", sampler.label()), Command::Sampler(sampler)).if_possible(path);
+    }
+    for samples in [1, 16, 64, 256, 1024, 4096] {
+        list.add(format!("Samples a pixel: {samples}"), Command::MaxSamples(samples));
+    }
+}
+
+fn boxes(list: &mut List, state: &State) {
+    let now = state.settings.overlay;
+    let mut toggle = |name: &'static str, change: fn(&mut OverlaySettings)| {
+        let mut overlay = now;
+        change(&mut overlay);
+        list.add(name, Command::Overlay(overlay)).if_possible(overlay != now && state.shown.is_some());
+    };
+    toggle("Leaves only, or a depth", |o| o.leaves_only = !o.leaves_only);
+    toggle("Split planes on or off", |o| o.planes = !o.planes);
+    toggle("Empty cells on or off", |o| o.empty_cells = !o.empty_cells);
+    toggle("Hidden lines on or off", |o| o.hidden_lines = !o.hidden_lines);
+    toggle("Boxes of the selected cell only, or of all", |o| o.subtree_only = !o.subtree_only);
+    let mut overlay = now;
+    overlay.boxes = !overlay.boxes;
+    list.add("Boxes on or off", Command::Overlay(overlay)).key(BOXES).if_possible(state.shown.is_some());
+    let deepest = toolbar::deepest(state);
+    for (name, depth, key) in [
+        ("A level deeper", now.depth.saturating_add(1).min(deepest), DEEPER[0]),
+        ("A level higher", now.depth.saturating_sub(1), DEEPER[1]),
+    ] {
+        let single = now.from_depth == now.depth;
+        let overlay = OverlaySettings { depth, from_depth: if single { depth } else { now.from_depth.min(depth) }, ..now };
+        list.add(name, Command::Overlay(overlay)).key(key).if_possible(overlay != now && state.shown.is_some());
+    }
+    for color in BoxColor::ALL {
+        let overlay = OverlaySettings { color, ..now };
+        list.add(format!("Colour boxes by {}", color.name()), Command::Overlay(overlay)).if_possible(overlay != now);
+    }
+}
+
+fn structure(list: &mut List, state: &State) {
+    for entry in registry::ALL {
+        let other = entry.id != state.settings.entry().id && !state.is_measuring();
+        list.add(format!("Show {}", entry.name), Command::Structure(entry.id)).if_possible(other);
+    }
+    for entry in registry::ALL {
+        let here = state.settings.workspace == Workspace::Compare && state.settings.mode != Mode::Path;
+        let other = entry.id != state.settings.entry().id;
+        list.add(format!("Split with {}", entry.name), Command::PutBeside(Some(entry.id))).if_possible(here && other);
+    }
+    list.add("One picture again", Command::PutBeside(None)).if_possible(state.beside.chosen.is_some());
+    let outline = state.tree.outline.as_ref();
+    for rank in Rank::ALL {
+        let row = outline.and_then(|outline| outline.greatest(rank));
+        list.add(format!("Select: {}", rank.name()), Command::SelectRow(row.unwrap_or(0))).if_possible(row.is_some());
+    }
+    list.add("Open all of the tree", Command::OpenBelow(0)).if_possible(outline.is_some());
+    let hide = !state.settings.hide_outcome;
+    list.add(if hide { "Hide outcomes" } else { "Show outcomes" }, Command::HideOutcome(hide));
+}
+
+fn ray(list: &mut List, state: &State) {
+    let rays = &state.rays;
+    let there = !rays.columns.is_empty() && state.settings.workspace == Workspace::Ray;
+    let go = |to: usize| Command::Step(rays.lead, to);
+    list.add("Next step", go(rays.at + 1)).if_possible(there && rays.at < rays.last());
+    list.add("Step before", go(rays.at.saturating_sub(1))).if_possible(there && rays.at > 0);
+    let leaf = rays.columns.get(rays.lead).and_then(|lead| lead.followed.leaf(rays.at, true));
+    list.add("Next leaf", go(leaf.unwrap_or(0))).if_possible(there && leaf.is_some());
+    let playing = rays.playing.is_some();
+    list.add(if playing { "Pause the ray" } else { "Play the ray" }, Command::Play(!playing)).if_possible(there);
+}
+
+fn measure(list: &mut List, state: &State) {
+    let free = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+    list.add("Measure all structures", Command::Measure).if_possible(free);
+    list.add("Look for causes of slow rays", Command::FindCauses).if_possible(free);
+    list.add("Measure quality against its cost", Command::MeasureTradeoffs).if_possible(free);
+    list.add("Measure what leaving out saves", Command::MeasureNeeds).if_possible(free);
+    list.add("Make a reference", Command::MakeReference).if_possible(free && state.settings.mode == Mode::Path);
+    list.add("Check this model", Command::CheckModel).if_possible(free);
+    list.add("Run the stability lab", Command::RunLab).if_possible(!state.is_measuring() && !state.is_checking());
+    for plot in Plot::ALL {
+        list.add(format!("Plot of errors: {}", plot.name()), Command::ErrorPlot(plot));
+    }
+}
+
+fn window(list: &mut List, state: &State) {
+    for workspace in Workspace::ALL {
+        let other = workspace != state.settings.workspace;
+        let name = format!("{} workspace", workspace.name());
+        list.add(name, Command::Workspace(workspace)).key(key_of(workspace)).if_possible(other);
+    }
+    for (theme, name) in
+        [(ThemeChoice::System, "Look: as the system"), (ThemeChoice::Light, "Look: light"), (ThemeChoice::Dark, "Look: dark")]
+    {
+        list.add(name, Command::Theme(theme)).if_possible(theme != state.settings.theme);
+    }
+    for (choice, name) in
+        [(Navigation::Standard, "Mouse: left orbits, middle pans"), (Navigation::Blender, "Mouse: middle orbits, as in Blender")]
+    {
+        list.add(name, Command::Navigation(choice)).if_possible(choice != state.settings.navigation);
+    }
+    let scale = state.settings.scale;
+    let [up, down] = [true, false].map(|up| scaled(scale, up));
+    list.add("Larger", Command::Scale(up)).key(LARGER).key(LARGER_UNSHIFTED).if_possible(up != scale);
+    list.add("Smaller", Command::Scale(down)).key(SMALLER).if_possible(down != scale);
+    list.add("Normal size", Command::Scale(1.0)).key(SAME_SIZE).if_possible(scale != 1.0);
+    let present = if state.presenting { "End the presentation" } else { "Presentation: larger, without panels" };
+    list.add(present, Command::Present(!state.presenting)).key(PRESENT);
+    list.add("Terms, with formulas and sources", Command::Terms(true)).if_possible(!state.terms);
+    list.add("Full screen", Command::FullScreen).key(FULL_SCREEN);
+    list.add("Reset layout", Command::ResetLayout);
+    list.add("All commands", Command::Palette(true)).key(PALETTE);
+    let help = list.add("Keys and mouse", Command::Help(!state.help));
+    help.keys.extend(HELP);
+}
+
+/// How well a name fits what was typed: less is better, `None` if its letters do not come up in that order. Letters that begin
+/// words, and those that follow each other, fit best.
+pub fn fit(name: &str, typed: &str) -> Option<u32> {
+    let letters: Vec<char> = name.chars().flat_map(char::to_lowercase).collect();
+    let (mut cost, mut at, mut last) = (0, 0, None);
+    for wanted in typed.chars().flat_map(char::to_lowercase).filter(|c| !c.is_whitespace()) {
+        let begins = |i: usize| i == 0 || !letters[i - 1].is_alphanumeric();
+        let next = letters[at..].iter().position(|c| *c == wanted).map(|i| at + i)?;
+        // The beginning of a later word is as good as what comes next.
+        let word = (at..letters.len()).find(|i| letters[*i] == wanted && begins(*i));
+        let follows = last.is_some_and(|last: usize| next == last + 1);
+        let chosen = if follows { next } else { word.unwrap_or(next) };
+        cost += if follows || begins(chosen) { 0 } else { 4 };
+        cost += u32::try_from(chosen - at).unwrap_or(u32::MAX).min(8);
+        (at, last) = (chosen + 1, Some(chosen));
+    }
+    Some(cost * 64 + u32::try_from(letters.len()).unwrap_or(63).min(63))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_fit_by_words_and_letters() {
+        let best = |typed: &str, names: &[&'static str]| {
+            names.iter().filter_map(|name| Some((fit(name, typed)?, *name))).min().map(|best| best.1)
+        };
+        let names =
+            ["Open…", "Open a path…", "Show k-d tree", "Show BVH", "Measure all structures", "Check this model", "Look: dark"];
+        for (typed, expected) in [
+            ("open", "Open…"),
+            ("path", "Open a path…"),
+            ("kd", "Show k-d tree"),
+            ("bvh", "Show BVH"),
+            ("mas", "Measure all structures"),
+            ("ctm", "Check this model"),
+            ("DARK", "Look: dark"),
+        ] {
+            assert_eq!(best(typed, &names), Some(expected), "{typed}");
+        }
+        assert_eq!(best("xyz", &names), None);
+        assert!(names.iter().all(|name| fit(name, "").is_some()));
+    }
+}

@@ -1,0 +1,92 @@
+//! Why rays of this view are slow, in a few sentences, and what each mesh costs.
+
+use eframe::egui::{Button, CollapsingHeader, Grid, Label, ProgressBar, RichText, Ui};
+
+use super::{Commands, empty, heading};
+use crate::lab::findings::{Finding, Findings};
+use crate::viewer::command::Command;
+use crate::viewer::format;
+use crate::viewer::state::State;
+use crate::viewer::theme::{self, Palette};
+
+/// Meshes that are listed.
+const MESHES: usize = 12;
+
+/// Draws the section.
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    heading(ui, "Findings");
+    if let Some(job) = &state.causes.running {
+        let now = job.progress.snapshot();
+        ui.horizontal(|ui| {
+            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(30.0 * theme::GRID).text("Looking"));
+            if ui.button("Cancel").on_hover_text("Stop looking.").clicked() {
+                commands.push(Command::CancelCauses);
+            }
+        });
+        return;
+    }
+    if let Some(found) = &state.causes.found {
+        list(ui, found, commands);
+        if state.causes_are_old() {
+            empty(ui, "Of an earlier view.");
+        }
+    }
+    if state.causes.found.is_none() || state.causes_are_old() {
+        let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+        let help = "Follow some of this view's rays and say what makes them slow: about two seconds. Rendering rests meanwhile.";
+        if ui.add_enabled(possible, Button::new("Look for causes")).on_hover_text(help).clicked() {
+            commands.push(Command::FindCauses);
+        }
+    }
+}
+
+fn list(ui: &mut Ui, found: &Findings, commands: &mut Commands) {
+    if found.list.is_empty() {
+        let (nodes, tests) = (format::number(found.nodes), format::number(found.tests));
+        empty(ui, &format!("Nothing stands out: a ray enters {nodes} nodes and is tested against {tests} triangles."));
+    }
+    for (i, finding) in found.list.iter().enumerate() {
+        one(ui, i, finding, commands);
+    }
+    if found.meshes.len() > 1 {
+        CollapsingHeader::new("Cost by mesh").show(ui, |ui| meshes(ui, found));
+    }
+}
+
+fn one(ui: &mut Ui, i: usize, finding: &Finding, commands: &mut Commands) {
+    let palette = Palette::in_ui(ui);
+    ui.add(Label::new(format!("{}. {}", i + 1, finding.text)).wrap());
+    ui.horizontal(|ui| {
+        let ns = if finding.ns.is_finite() { format!("{} ns a ray, ", format::number(finding.ns)) } else { String::new() };
+        let text = format!("{ns}{} of its work", format::percent(finding.share));
+        let help = "Estimated: steps and tests times what each takes here, as fitted to timed rays.";
+        ui.label(RichText::new(text).small().color(palette.dim)).on_hover_text(help);
+        if let Some(row) = finding.row {
+            let button = ui.button("Show").on_hover_text("Select the cell where it is seen best, in the Structure workspace.");
+            if button.accessible_name(format!("Show finding {}", i + 1)).clicked() {
+                commands.push(Command::ShowCause(row));
+            }
+        }
+    });
+}
+
+fn meshes(ui: &mut Ui, found: &Findings) {
+    let palette = Palette::in_ui(ui);
+    Grid::new("cost by mesh").num_columns(3).striped(true).show(ui, |ui| {
+        for (name, help) in [
+            ("mesh", "As the file calls it."),
+            ("tests", "Its part of the triangle tests."),
+            ("triangles", "Its part of the triangles."),
+        ] {
+            ui.label(RichText::new(name).small().color(palette.dim)).on_hover_text(help);
+        }
+        ui.end_row();
+        for mesh in found.meshes.iter().take(MESHES) {
+            ui.add(Label::new(&mesh.name).truncate())
+                .on_hover_text(format!("{} of its tests are hits.", format::percent(mesh.hits)));
+            ui.label(format::percent(mesh.tests));
+            ui.label(format::percent(mesh.triangles));
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,162 @@
+//! The whole state of the window, saved to a file and opened from it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError};
+
+use super::State;
+use crate::accel::{CellId, registry};
+use crate::job::{Job, Outcome};
+use crate::lab::follow::{from_text, to_text};
+use crate::viewer::model::Instances;
+use crate::viewer::pick::Picked;
+use crate::viewer::rays::MOST;
+use crate::viewer::workers;
+use crate::viewer::workspace_file::{ENDING, WorkspaceFile};
+
+/// A file on its way in or out, and what it awaits.
+#[derive(Default)]
+pub struct Saving {
+    /// Where it shall be saved: the answer of the dialog.
+    asked: Option<Receiver<Option<PathBuf>>>,
+    writing: Option<Job<Result<(), String>>>,
+    reading: Option<Job<Result<WorkspaceFile, String>>>,
+    /// What was read, until its model is open; and what became of instances before.
+    read: Option<(WorkspaceFile, Instances)>,
+}
+
+impl Saving {
+    /// Something else is opened: what was on its way is not wanted any more.
+    pub fn forget(&mut self) {
+        (self.reading, self.read) = (None, None);
+    }
+
+    /// Whether a file is on its way.
+    pub const fn is_busy(&self) -> bool {
+        self.writing.is_some() || self.reading.is_some() || self.read.is_some()
+    }
+}
+
+impl State {
+    /// Asks where to save.
+    pub(super) fn ask_where_to_save(&mut self) {
+        if self.model.is_some() && self.saving.asked.is_none() {
+            self.saving.asked = Some(self.dialog.save(&format!("workspace.{ENDING}"), Arc::clone(&self.shared.wake)));
+        }
+    }
+
+    /// What would be saved now.
+    fn to_file(&self) -> Option<WorkspaceFile> {
+        let model = self.model.as_ref()?;
+        // A selection is of the structure that is shown, while another one may be on its way.
+        let selected = self.picked.as_ref().filter(|_| self.building.is_none());
+        let ids = |picked: &Picked| picked.ids().iter().map(|id| (id.instance, id.node)).collect();
+        let mut file = WorkspaceFile::new(&model.scene.name, &self.settings, self.camera, self.instances);
+        file.selected = selected.map(ids).unwrap_or_default();
+        file.ray = self.rays.asked.as_ref().map(to_text);
+        file.ray_kind = self.rays.kind.id().to_owned();
+        file.beside = self.rays.beside.iter().map(|id| (*id).to_owned()).collect();
+        file.bookmarks.clone_from(&self.bookmarks);
+        (file.split, file.divider) = (self.beside.chosen.map(|entry| entry.id.to_owned()), self.beside.divider);
+        Some(file)
+    }
+
+    /// Starts reading a file.
+    pub(super) fn open_workspace(&mut self, path: String) {
+        self.asking = None;
+        match Job::spawn("workspace", self.shared.waker(), move |_, _| WorkspaceFile::read(&path)) {
+            Ok(job) => self.saving.reading = Some(job),
+            Err(e) => self.fail(format!("Can't open the workspace: {e}.")),
+        }
+    }
+
+    pub(super) fn advance_saving(&mut self) {
+        match self.saving.asked.as_ref().map(Receiver::try_recv) {
+            Some(Ok(path)) => {
+                self.saving.asked = None;
+                self.write(path);
+            }
+            Some(Err(TryRecvError::Disconnected)) => self.saving.asked = None,
+            Some(Err(TryRecvError::Empty)) | None => {}
+        }
+        if let Some(job) = self.saving.writing.take() {
+            match job.poll() {
+                Outcome::Running => self.saving.writing = Some(job),
+                Outcome::Done(Ok(())) => {}
+                Outcome::Done(Err(why)) => self.fail(why),
+                Outcome::Died => self.fail("Can't save the workspace: writing failed. Please report this.".to_owned()),
+            }
+        }
+        if let Some(job) = self.saving.reading.take() {
+            match job.poll() {
+                Outcome::Running => self.saving.reading = Some(job),
+                Outcome::Done(Ok(file)) => {
+                    let before = std::mem::replace(&mut self.instances, file.instances);
+                    self.open(file.model.clone());
+                    self.saving.read = Some((file, before));
+                }
+                Outcome::Done(Err(why)) => self.fail(why),
+                Outcome::Died => self.fail("Can't open the workspace: reading failed. Please report this.".to_owned()),
+            }
+        }
+        if self.loading.is_none()
+            && let Some((_, before)) = self.saving.read.take()
+        {
+            self.instances = before; // its model could not be opened
+        }
+        self.await_selection();
+    }
+
+    fn write(&mut self, path: Option<PathBuf>) {
+        let (Some(path), Some(file)) = (path, self.to_file()) else { return };
+        let mut whole = path.clone();
+        if !WorkspaceFile::is_one(&path.to_string_lossy()) {
+            whole.as_mut_os_string().push(format!(".{ENDING}"));
+        }
+        // The dialog has asked about the name that it gave alone.
+        let overwrites = whole != path;
+        let write = move || match overwrites && whole.exists() {
+            true => Err(format!("Can't save {}: it is there already. Choose it by its whole name.", whole.display())),
+            false => file.write(&whole),
+        };
+        match Job::spawn("save", self.shared.waker(), move |_, _| write()) {
+            Ok(job) => self.saving.writing = Some(job),
+            Err(e) => self.fail(format!("Can't save: {e}.")),
+        }
+    }
+
+    /// Brings back what was saved, now that the model is open.
+    pub(super) fn bring_back(&mut self) {
+        let Some((file, _)) = self.saving.read.take() else { return };
+        self.settings.take_view(&file.settings);
+        self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
+        (self.camera, self.framed) = (file.camera, None);
+        self.bookmarks = file.bookmarks;
+        self.await_cell(&file.selected);
+        self.rays.beside = file.beside.iter().filter_map(|id| registry::find(id)).map(|entry| entry.id).take(MOST - 1).collect();
+        self.rays.beside.dedup();
+        self.beside.chosen = file.split.and_then(|id| registry::find(&id));
+        self.beside.divider = file.divider.clamp(0.0, 1.0);
+        self.rays.kind = file.ray_kind.parse().unwrap_or(self.rays.kind);
+        self.rays.asked = file.ray.and_then(|text| from_text(&text).ok());
+    }
+
+    /// Selects what was saved, once its structure is there.
+    fn await_selection(&mut self) {
+        if self.building.is_some() || self.loading.is_some() {
+            return;
+        }
+        // Where the build came to nothing, or another structure was chosen, nobody waits any more.
+        let Some((key, path)) = self.awaited.take() else { return };
+        if let Some(shown) = self.shown.as_ref().filter(|shown| shown.key == key && !path.is_empty()) {
+            self.tree.restoring = true;
+            self.tree.selecting = workers::select_path(&self.shared, Arc::clone(&shown.accel), path).ok();
+        }
+    }
+
+    /// Selects a cell of the chosen structure, by the cells from the root to it, once that is there.
+    pub(super) fn await_cell(&mut self, path: &[(u32, u32)]) {
+        let path = path.iter().map(|(instance, node)| CellId { instance: *instance, node: *node }).collect();
+        self.awaited = Some((self.wanted_key(), path));
+    }
+}
