@@ -2,7 +2,7 @@
 
 use boxwood::viewer::settings::Workspace;
 use boxwood::viewer::theme;
-use eframe::egui::{Pos2, Role, pos2, vec2};
+use eframe::egui::{Modifiers, PointerButton, Pos2, Role, Vec2, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 
 use crate::files::{self, Files};
@@ -59,7 +59,10 @@ fn boxes_are_at_depth_six_in_one() {
     // The handle's middle goes from one end of the rail to the other, less its own radius.
     let radius = slider.height() / 2.5;
     let way = theme::SHORT_SLIDER - 2.0 * radius;
-    c.at(pos2(slider.left() + radius + way * 6.0 / deepest as f32, slider.center().y));
+    let at = pos2(slider.left() + radius + way * 6.0 / deepest as f32, slider.center().y);
+    // A press that holds for a moment, as a hand's does.
+    c.w.drag(at, Vec2::ZERO, PointerButton::Primary, Modifiers::NONE);
+    c.made += 1;
     c.w.settle();
     assert_eq!(c.w.state().settings.overlay.depth, 6);
     c.within(1);
