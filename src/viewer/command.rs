@@ -59,6 +59,8 @@ pub enum Command {
     OpenRow(u32, bool),
     /// Show everything below a row.
     OpenBelow(u32),
+    /// Hide all but the root and its children.
+    CloseTree,
     /// Try a plane in the selected node: across which axis, and where from 0 to 1.
     TryPlane(Option<(Axis, f64)>),
     /// Look why rays of this view are slow.

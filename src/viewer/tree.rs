@@ -22,6 +22,8 @@ pub struct Tree {
     pub outlining: Option<(Key, Outlining)>,
     /// Which rows are to be seen.
     pub folding: Folding,
+    /// The same as they were at first.
+    first: Folding,
     /// The selected row.
     pub selected: Option<u32>,
     /// Grows whenever the selected row is to be brought into sight.
@@ -36,13 +38,34 @@ pub struct Tree {
     pub revealed: bool,
 }
 
+/// The cells of a structure, and its rows with the root open: which takes a while where the root has millions of children.
+#[derive(Clone)]
+pub struct Listed {
+    /// The cells.
+    pub outline: Arc<Outline>,
+    folding: Folding,
+}
+
+impl Listed {
+    /// Of a list of cells. Not for the window's thread.
+    pub fn of(outline: Arc<Outline>) -> Self {
+        let mut folding = Folding::closed(&outline);
+        folding.open(0, &outline);
+        Self { outline, folding }
+    }
+}
+
 impl Tree {
     /// Takes in the cells of a structure.
-    pub fn listed(&mut self, outline: Arc<Outline>) {
-        self.folding = Folding::closed(&outline);
-        self.folding.open(0, &outline);
-        self.outline = Some(outline);
+    pub fn listed(&mut self, listed: Listed) {
+        (self.folding, self.first) = (listed.folding.clone(), listed.folding);
+        self.outline = Some(listed.outline);
         self.failed = None;
+    }
+
+    /// Closes all but the root.
+    pub fn close_all(&mut self) {
+        self.folding.clone_from(&self.first);
     }
 
     /// Forgets the cells: another structure is shown.

@@ -12,6 +12,7 @@ use super::model::{self, Instances, Model};
 use super::overlay::{self, Collected, Wanted};
 use super::pick::{self, Picked};
 use super::shown;
+use super::tree::Listed;
 use crate::accel::outline::{Outline, OutlineError};
 use crate::accel::registry;
 use crate::accel::stats::{SahWeights, Stats};
@@ -214,14 +215,15 @@ pub fn curves(shared: &Shared, shown: &Built, cell: Cell) -> std::io::Result<Cur
 }
 
 /// The list of a structure's cells, on its way.
-pub type Outlining = Job<Result<Outline, OutlineError>>;
+pub type Outlining = Job<Result<Listed, OutlineError>>;
 
 /// Starts listing the cells of a structure.
 pub fn outline(shared: &Shared, shown: &Built) -> std::io::Result<Outlining> {
     let (accel, weights) = (Arc::clone(&shown.accel), SahWeights::of(&shown.key.params));
     let budget = shared.budget.clone();
     Job::spawn("outline", shared.waker(), move |cancel, progress| {
-        Outline::of(accel.as_ref(), weights, (&budget, cancel, progress))
+        let outline = Outline::of(accel.as_ref(), weights, (&budget, cancel, progress))?;
+        Ok(Listed::of(Arc::new(outline)))
     })
 }
 
@@ -239,7 +241,7 @@ pub fn select(shared: &Shared, accel: Arc<dyn Accel>, outline: Arc<Outline>, row
 }
 
 /// Why rays are slow, and the cells that say so, on their way; or why there is none: nothing to say where it was stopped.
-pub type FindingCauses = Job<Result<(Findings, Arc<Outline>), String>>;
+pub type FindingCauses = Job<Result<(Findings, Listed), String>>;
 
 /// Starts looking why rays of a view are slow, listing the structure's cells first if they are not; the renderer is kept from
 /// running meanwhile.
@@ -262,7 +264,7 @@ pub fn find_causes(
             },
         };
         let found = findings::find(&view, size_px, (key.entry, &key.params, &outline), &pool, cancel, progress);
-        found.map(|found| (found, outline)).map_err(|_| String::new())
+        found.map(|found| (found, Listed::of(outline))).map_err(|_| String::new())
     })
 }
 

@@ -40,6 +40,12 @@ fn the_deepest_leaf_and_the_dearest_cell_are_two_clicks_away() {
         let name = format!("{} {}", if outline.row(at).is_leaf() { "leaf" } else { "node" }, outline.row(at).id.node);
         assert!(w.says(&name), "{name} is in sight");
     }
+    w.button("Close all");
+    let tree = &w.state().tree;
+    let outline = tree.outline.clone().expect("listed");
+    assert_eq!(tree.folding.visible() as usize, 1 + outline.children(0).count());
+    w.button("Open all");
+    assert_eq!(w.state().tree.folding.visible(), outline.len());
     // Its box is drawn over the picture, whatever is chosen.
     assert!(w.state().overlay.as_ref().is_some_and(|overlay| overlay.selected.is_some()));
 }

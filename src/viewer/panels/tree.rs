@@ -84,7 +84,7 @@ fn summary(ui: &mut Ui, outline: &Outline, commands: &mut Commands) {
             commands.push(Command::OpenBelow(0));
         }
         if ui.button("Close all").on_hover_text("Show the root and its children.").clicked() {
-            commands.extend([Command::OpenRow(0, false), Command::OpenRow(0, true)]);
+            commands.push(Command::CloseTree);
         }
     });
 }

@@ -26,7 +26,7 @@ impl State {
                     return;
                 }
                 Outcome::Done(Ok(outline)) => {
-                    self.tree.listed(Arc::new(outline));
+                    self.tree.listed(outline);
                     self.follow_selection();
                 }
                 Outcome::Done(Err(OutlineError::Cancelled(_))) => self.tree.of = None,

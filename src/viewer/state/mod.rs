@@ -408,6 +408,7 @@ impl State {
             Command::SelectRow(row) => self.select_row(row),
             Command::OpenRow(row, open) => self.open_row(row, open),
             Command::OpenBelow(row) => self.open_below(row),
+            Command::CloseTree => self.tree.close_all(),
             Command::TryPlane(plane) => self.try_plane(plane),
             Command::FindCauses => self.find_causes(),
             Command::CancelCauses => self.causes.running = None,
