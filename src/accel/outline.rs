@@ -187,16 +187,10 @@ impl Outline {
         path
     }
 
-    /// The next sibling in some direction, the first again after the last.
-    pub fn sibling(&self, at: u32, forward: bool) -> Option<u32> {
-        let parent = self.parent(at)?;
-        if forward {
-            let next = self.behind(at);
-            return Some(if next < self.behind(parent) { next } else { parent + 1 });
-        }
-        let before = if at == parent + 1 { self.behind(parent) } else { at };
-        // What lies just before is the last row below the sibling that is looked for.
-        std::iter::successors(Some(before - 1), |at| self.parent(*at)).find(|at| self.parent(*at) == Some(parent))
+    /// The next sibling, the first again after the last.
+    pub fn sibling(&self, at: u32) -> Option<u32> {
+        let (parent, next) = (self.parent(at)?, self.behind(at));
+        Some(if next < self.behind(parent) { next } else { parent + 1 })
     }
 
     /// The row of a cell, by those above it from the root on.
@@ -606,9 +600,8 @@ mod tests {
         let (_, outline) = of("builtin:soup?triangles=3000", registry::find("bvh").expect("registered"), &Budget::new(1 << 30));
         let outline = outline.expect("small");
         let [left, right]: [u32; 2] = outline.children(0).collect::<Vec<_>>().try_into().expect("two");
-        assert_eq!([left, right].map(|at| outline.sibling(at, true)), [Some(right), Some(left)]);
-        assert_eq!([left, right].map(|at| outline.sibling(at, false)), [Some(right), Some(left)]);
-        assert_eq!(outline.sibling(0, true), None);
+        assert_eq!([left, right].map(|at| outline.sibling(at)), [Some(right), Some(left)]);
+        assert_eq!(outline.sibling(0), None);
         let deepest = outline.row(outline.greatest(Rank::Depth).expect("a leaf"));
         assert!(deepest.is_leaf() && (0..outline.len()).all(|at| outline.row(at).depth <= deepest.depth));
         let fullest = outline.row(outline.greatest(Rank::References).expect("a leaf"));

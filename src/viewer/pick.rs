@@ -7,7 +7,7 @@ use super::gpu::BoxInstance;
 use super::overlay::placed;
 use crate::accel::cell::{Cell, CellId, Descend, bounds_in_scene, walk};
 use crate::accel::outline::{Outline, cells_along};
-use crate::accel::probe::{Counts, Step, Watched};
+use crate::accel::probe::Counts;
 use crate::accel::{Accel, Hit, Mode};
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Scene;
@@ -25,10 +25,6 @@ pub struct Picked {
     pub boxes: Vec<BoxInstance>,
     /// Which of them is selected.
     pub level: usize,
-    /// What the ray of the click did, step by step.
-    pub steps: Vec<Step>,
-    /// It did more than is listed.
-    pub more_steps: bool,
 }
 
 impl Picked {
@@ -39,7 +35,7 @@ impl Picked {
         let kind = if facts.is_leaf() { "Leaf" } else { "Node" };
         let (references, share) = (format::count(facts.references.into()), format::share(facts.share));
         let text = format!("{kind} {} at depth {}: {references} triangles, {share} of the SAH cost", facts.id.node, facts.depth);
-        Self { text, level: path.len().saturating_sub(1), boxes: boxes(accel, &path), path, steps: Vec::new(), more_steps: false }
+        Self::at_end(accel, path, text)
     }
 
     /// A cell by those from the root to it.
@@ -50,7 +46,13 @@ impl Picked {
             format!("{kind} {} at depth {}", cell.id.node, cell.depth)
         });
         let text = text.unwrap_or_else(|| "The cell that was selected is not there any more".to_owned());
-        Self { text, level: path.len().saturating_sub(1), boxes: boxes(accel, &path), path, steps: Vec::new(), more_steps: false }
+        Self::at_end(accel, path, text)
+    }
+
+    /// The last of cells within each other.
+    fn at_end(accel: &dyn Accel, path: Vec<Cell>, text: String) -> Self {
+        let place = |cell: &Cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4]);
+        Self { text, level: path.len().saturating_sub(1), boxes: path.iter().map(place).collect(), path }
     }
 
     /// The numbers of the cells from the root to the selected one.
@@ -69,31 +71,20 @@ impl Picked {
     }
 }
 
-/// Steps that are listed of one ray.
-const MOST_STEPS: usize = 20_000;
-
 /// Traces the ray of the click; `None` if it meets nothing.
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
 pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray, cancel: &Cancel) -> Result<Option<Picked>, Cancelled> {
     let mut counts = Counts::default();
-    let (mut steps, mut more_steps) = (Vec::new(), false);
-    let mut listener = |step| if steps.len() < MOST_STEPS { steps.push(step) } else { more_steps = true };
-    let mut watched = Watched { counts: &mut counts, listener: Some(&mut listener) };
-    let Some(hit) = accel.trace_heard(ray, Mode::Closest, &mut watched, cancel)? else { return Ok(None) };
+    let Some(hit) = accel.trace_watched(ray, Mode::Closest, &mut counts, cancel)? else { return Ok(None) };
     let path = path_to(accel, ray, &hit);
     let mesh = &scene.meshes[scene.instances[hit.instance as usize].mesh];
     let name = if mesh.name.is_empty() { String::new() } else { format!(" of {}", mesh.name) };
     let depth = path.last().map(|leaf| format!(", leaf at depth {}", leaf.depth)).unwrap_or_default();
     let work = format!("{} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
     let text = format!("Triangle {}{name}{depth}: this ray took {work}", format::count(u64::from(hit.primitive)));
-    Ok(Some(Picked { text, level: path.len().saturating_sub(1), boxes: boxes(accel, &path), path, steps, more_steps }))
-}
-
-/// The boxes of cells, in the scene's scaled space.
-fn boxes(accel: &dyn Accel, path: &[Cell]) -> Vec<BoxInstance> {
-    path.iter().map(|cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4])).collect()
+    Ok(Some(Picked::at_end(accel, path, text)))
 }
 
 /// The cells from the root to the leaf that holds the triangle and the point; empty if none does.

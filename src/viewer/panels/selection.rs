@@ -1,9 +1,8 @@
-//! What is selected: the cells that hold the point that was clicked, what dividing the selected one
-//! would have cost, and the steps of the ray.
+//! What is selected: the cells that hold the point that was clicked, and what dividing the selected one
+//! would have cost.
 
-use eframe::egui::{self, CollapsingHeader, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Ui};
 
-use super::steps::sentence;
 use super::{Commands, decision, fact, heading, node};
 use crate::accel::cell::{Cell, CellKind};
 use crate::geometry::Axis;
@@ -11,7 +10,6 @@ use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::pick::Picked;
 use crate::viewer::state::State;
-use crate::viewer::theme;
 
 /// Draws the panel, if anything is selected.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -33,7 +31,6 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             _ => drop(ui.spinner().on_hover_text("Working out what each division would cost.")),
         }
     }
-    steps(ui, picked);
 }
 
 /// Which cell of the path is selected, and the way to its parent and child.
@@ -61,23 +58,4 @@ fn levels(ui: &mut Ui, picked: &Picked, cell: &Cell, commands: &mut Commands) {
         format!("{kind} {} at depth {}", cell.id.node, cell.depth),
         "The cell that is selected, by its number and depth.",
     );
-}
-
-/// What the ray of the click did, with the reason for each cell that it left out.
-fn steps(ui: &mut Ui, picked: &Picked) {
-    if picked.steps.is_empty() {
-        return;
-    }
-    let count = format::count(picked.steps.len() as u64);
-    let title = format!("Steps of this ray ({count}{})", if picked.more_steps { " and more" } else { "" });
-    CollapsingHeader::new(title).id_salt("steps").show(ui, |ui| {
-        let height = ui.text_style_height(&egui::TextStyle::Small) + ui.spacing().item_spacing.y;
-        let area = ScrollArea::vertical().id_salt("step list").max_height(10.0 * theme::ROW).auto_shrink([false, true]);
-        area.show_rows(ui, height, picked.steps.len(), |ui, rows| {
-            for (i, step) in rows.clone().zip(&picked.steps[rows]) {
-                let text = RichText::new(format!("{}  {}", i + 1, sentence(step))).small();
-                ui.add(egui::Label::new(text).truncate());
-            }
-        });
-    });
 }

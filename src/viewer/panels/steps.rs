@@ -161,7 +161,7 @@ fn brief(step: &Step) -> String {
 }
 
 /// What is done in a step, in words.
-pub fn sentence(step: &Step) -> String {
+fn sentence(step: &Step) -> String {
     match step {
         Step::Level(0) => "is back in the upper level".to_owned(),
         Step::Level(instance) => format!("goes below entry {}", instance - 1),

@@ -234,7 +234,7 @@ pub fn steps(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let ways = [
         ("Parent", "Select the cell around this one.", outline.parent(at)),
         ("Child", "Select the first cell in this one.", child),
-        ("Sibling", "Select the next cell in the same one.", outline.sibling(at, true)),
+        ("Sibling", "Select the next cell in the same one.", outline.sibling(at)),
     ];
     ui.horizontal(|ui| {
         for (name, help, row) in ways {

@@ -67,6 +67,8 @@ impl State {
         }
         let job = workers::select(&self.shared, Arc::clone(&shown.accel), Arc::clone(outline), row);
         self.tree.selecting = job.ok();
+        // A selection of a bookmark that was on its way is overtaken.
+        self.tree.restoring = false;
         self.picking = None;
         self.tree.select(Some(row));
     }

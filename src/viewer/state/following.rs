@@ -84,6 +84,8 @@ impl State {
                 let failed = failed.collect::<Vec<_>>().join(" ");
                 self.rays.note = match found.ray {
                     None => Some("The ray meets nothing that another could leave.".to_owned()),
+                    // That some are built later was said when it began.
+                    Some(_) if failed.is_empty() && self.is_measuring() => self.rays.note.take(),
                     Some(_) => Some(failed).filter(|text| !text.is_empty()),
                 };
                 self.light();

@@ -484,7 +484,7 @@ impl State {
 
     fn pick(&mut self, at: Vec2) {
         let ray = self.camera.ray(&self.camera.frame(), at, self.aspect());
-        self.tree.selecting = None;
+        (self.tree.selecting, self.tree.restoring) = (None, false);
         if self.settings.workspace == Workspace::Ray {
             self.follow(ray);
         }
