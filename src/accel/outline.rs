@@ -257,6 +257,15 @@ impl Outline {
         [&mut self.chances, &mut self.shares, &mut self.own, &mut self.overlaps].into_iter().for_each(Vec::shrink_to_fit);
     }
 
+    /// The least chance that a line meets a cell and nothing that is in it: neither a child nor a reference.
+    fn wasted(&self, i: usize) -> f32 {
+        if self.is_cut_at(i) || (self.is_leaf_at(i) && self.references[i] > 0) {
+            return 0.0;
+        }
+        let met: f64 = self.children(num::index(i)).map(|child| f64::from(self.chances[child as usize])).sum();
+        (f64::from(self.chances[i]) - met) as f32
+    }
+
     fn find_greatest(&self, of: Rank) -> Option<u32> {
         let leaf = |i: usize| self.is_leaf_at(i);
         let inner = |i: usize| !leaf(i);
@@ -265,6 +274,7 @@ impl Outline {
             Rank::References => leaf(i).then_some(self.references[i] as f32),
             Rank::Cost => (i > 0).then_some(self.own[i]),
             Rank::Overlap => inner(i).then_some(self.overlaps[i] * self.chances[i]).filter(|x| !x.is_nan()),
+            Rank::Empty => Some(self.wasted(i)).filter(|wasted| *wasted > 0.0),
         };
         let best = (0..self.nodes.len()).filter_map(|i| Some((i, value(i)?)));
         best.reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(i, _)| num::index(i))
@@ -304,11 +314,13 @@ pub enum Rank {
     Cost,
     /// The node whose children's overlap is met most often.
     Overlap,
+    /// The cell that is met most often with nothing in it being met.
+    Empty,
 }
 
 impl Rank {
     /// All, in the order of menus.
-    pub const ALL: [Self; 4] = [Self::Cost, Self::Depth, Self::References, Self::Overlap];
+    pub const ALL: [Self; 5] = [Self::Cost, Self::Depth, Self::References, Self::Overlap, Self::Empty];
 
     /// What the row is.
     pub const fn name(self) -> &'static str {
@@ -317,6 +329,7 @@ impl Rank {
             Self::References => "Fullest leaf",
             Self::Cost => "Dearest cell",
             Self::Overlap => "Worst overlap",
+            Self::Empty => "Emptiest cell",
         }
     }
 
@@ -327,6 +340,7 @@ impl Rank {
             Self::References => "fullest",
             Self::Cost => "dearest",
             Self::Overlap => "overlap",
+            Self::Empty => "emptiest",
         }
     }
 
@@ -339,6 +353,9 @@ impl Rank {
                 "The cell, not the root, with the greatest part of the SAH cost by itself: C A(n)/A(root) over the whole."
             }
             Self::Overlap => "The node whose children's overlap a random line meets most often.",
+            Self::Empty => {
+                "The cell that a random line meets most often without meeting any of its children, or that is empty: A(n) less the areas of its children, over A(root)."
+            }
         }
     }
 }
@@ -609,6 +626,10 @@ mod tests {
         let dearest = outline.row(outline.greatest(Rank::Cost).expect("more than the root"));
         assert!((1..outline.len()).all(|at| outline.row(at).own_share <= dearest.own_share * 1.000_01));
         assert!(outline.row(outline.greatest(Rank::Overlap).expect("boxes")).overlap.is_some());
+        let wasted = |at: u32| outline.row(at).chance - outline.children(at).map(|child| outline.row(child).chance).sum::<f64>();
+        let emptiest = outline.greatest(Rank::Empty).expect("boxes do not fill each other");
+        let most = (0..outline.len()).filter(|at| !outline.row(*at).is_leaf()).map(wasted).fold(0.0, f64::max);
+        assert!(most > 0.0 && (wasted(emptiest) - most).abs() < 1e-6);
     }
 
     #[test]

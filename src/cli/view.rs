@@ -46,6 +46,10 @@ pub struct Args {
     /// Save a picture of the window once everything is there, and close it.
     #[arg(long, value_name = "FILE.png")]
     pub screenshot: Option<PathBuf>,
+    /// Show the window at work for some seconds (it turns the view, switches structures, goes down the levels), and save a
+    /// picture of each step into this folder.
+    #[arg(long, value_name = "DIR", conflicts_with = "screenshot")]
+    pub animate: Option<PathBuf>,
     /// Measure every structure before the picture is saved.
     #[arg(long, requires = "screenshot")]
     pub measure: bool,
@@ -55,7 +59,7 @@ pub struct Args {
     /// Begin in the Compare workspace with that plot: image, intersection or model; with --screenshot, fill it first.
     #[arg(long, value_name = "PLOT", value_parser = ["image", "intersection", "model"], conflicts_with_all = ["measure", "check"])]
     pub errors: Option<String>,
-    /// Begin in the Structure workspace; with --screenshot, select that cell first: dearest, deepest, fullest or overlap.
+    /// Begin in the Structure workspace; with --screenshot, select that cell first: dearest, deepest, fullest, overlap or emptiest.
     #[arg(long, value_name = "CELL", conflicts_with_all = ["measure", "check", "errors"])]
     pub select: Option<Rank>,
     /// With that, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
@@ -106,6 +110,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         pace: args.pace,
         endure: args.endure,
         screenshot: args.screenshot,
+        animate: args.animate,
         threads: args.machine.threads,
         memory_mib: args.machine.memory,
     };

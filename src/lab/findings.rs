@@ -52,9 +52,9 @@ pub struct Finding {
     pub row: Option<u32>,
 }
 
-/// What the triangles of a mesh take.
+/// What the triangles of a mesh, or of a material, take.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MeshCost {
+pub struct PartCost {
     /// Its name, or its number.
     pub name: String,
     /// Its part of the scene's triangles; no number where meshes are placed as instances.
@@ -71,7 +71,9 @@ pub struct Findings {
     /// At most five, the dearest first.
     pub list: Vec<Finding>,
     /// Each mesh that is tested, the dearest first.
-    pub meshes: Vec<MeshCost>,
+    pub meshes: Vec<PartCost>,
+    /// The same of materials.
+    pub materials: Vec<PartCost>,
     /// Rays that were followed.
     pub rays: usize,
     /// Nodes that a ray enters, on average.
@@ -251,13 +253,15 @@ impl<'a> Finder<'a> {
     }
 
     fn findings(self) -> Findings {
-        let meshes = self.meshes();
+        let meshes = self.parts(|prim| self.mesh(prim), |mesh| self.name(mesh));
+        let materials = self.parts(|prim| self.material(prim), |material| self.material_name(material));
         let found = [self.loose_boxes(), self.overlap(), self.full_leaves(), self.empty_cells(), self.one_mesh(&meshes)];
         let mut list: Vec<Finding> = found.into_iter().flatten().filter(|finding| finding.share >= LEAST).collect();
         list.sort_by(|a, b| b.share.total_cmp(&a.share));
         list.truncate(MOST);
         let over = |n: f64| n / self.tally.rays.max(1) as f64;
-        Findings { list, meshes, rays: self.tally.rays, nodes: over(self.visits), tests: over(self.tests), costs: self.costs }
+        let (rays, nodes, tests) = (self.tally.rays, over(self.visits), over(self.tests));
+        Findings { list, meshes, materials, rays, nodes, tests, costs: self.costs }
     }
 
     /// What so many steps and tests of all rays take of one ray, and as a part of all; without costs a step is a test.
@@ -395,7 +399,7 @@ impl<'a> Finder<'a> {
         Some(self.finding(Cause::EmptyCells, text, self.weigh(steps as f64, 0.0), Some(row)))
     }
 
-    fn one_mesh(&self, meshes: &[MeshCost]) -> Option<Finding> {
+    fn one_mesh(&self, meshes: &[PartCost]) -> Option<Finding> {
         let mesh = meshes.first().filter(|_| meshes.len() > 1)?;
         // Of instances it is not known.
         let stands_out = mesh.tests >= 2.0 * mesh.triangles && mesh.tests >= LEAST;
@@ -427,29 +431,44 @@ impl<'a> Finder<'a> {
         if name.is_empty() { format!("mesh {mesh}") } else { format!("mesh '{name}'") }
     }
 
-    fn meshes(&self) -> Vec<MeshCost> {
-        let mut by_mesh: HashMap<usize, [u64; 2]> = HashMap::new();
-        for (prim, tests) in &self.tally.tests {
-            let mesh = by_mesh.entry(self.mesh(*prim)).or_default();
-            (mesh[0], mesh[1]) = (mesh[0] + tests.tests, mesh[1] + tests.hits);
+    /// Which material a triangle has; the first number behind those of the scene stands for none.
+    fn material(&self, prim: Prim) -> usize {
+        let none = self.scene.materials.len();
+        self.scene.meshes.get(self.mesh(prim)).and_then(|mesh| mesh.material).unwrap_or(none)
+    }
+
+    fn material_name(&self, material: usize) -> String {
+        match self.scene.materials.get(material).map(|material| &material.name[..]) {
+            None => "no material".to_owned(),
+            Some("") => format!("material {material}"),
+            Some(name) => format!("material '{name}'"),
         }
-        let heard: u64 = by_mesh.values().map(|tests| tests[0]).sum();
-        let triangles = self.triangles();
-        let cost = |(mesh, [tests, hits]): (usize, [u64; 2])| MeshCost {
-            name: self.name(mesh),
-            triangles: triangles.as_ref().map_or(f64::NAN, |parts| parts.get(&mesh).copied().unwrap_or(0.0)),
+    }
+
+    /// What the triangles take, by the part of the scene that they belong to.
+    fn parts(&self, part_of: impl Fn(Prim) -> usize, name: impl Fn(usize) -> String) -> Vec<PartCost> {
+        let mut by_part: HashMap<usize, [u64; 2]> = HashMap::new();
+        for (prim, tests) in &self.tally.tests {
+            let part = by_part.entry(part_of(*prim)).or_default();
+            (part[0], part[1]) = (part[0] + tests.tests, part[1] + tests.hits);
+        }
+        let heard: u64 = by_part.values().map(|tests| tests[0]).sum();
+        let triangles = self.triangles(&part_of);
+        let cost = |(part, [tests, hits]): (usize, [u64; 2])| PartCost {
+            name: name(part),
+            triangles: triangles.as_ref().map_or(f64::NAN, |parts| parts.get(&part).copied().unwrap_or(0.0)),
             tests: tests as f64 / heard.max(1) as f64,
             hits: hits as f64 / tests.max(1) as f64,
         };
-        let mut meshes: Vec<MeshCost> = by_mesh.into_iter().map(cost).collect();
-        meshes.sort_by(|a, b| b.tests.total_cmp(&a.tests).then_with(|| a.name.cmp(&b.name)));
-        meshes
+        let mut parts: Vec<PartCost> = by_part.into_iter().map(cost).collect();
+        parts.sort_by(|a, b| b.tests.total_cmp(&a.tests).then_with(|| a.name.cmp(&b.name)));
+        parts
     }
 }
 
 impl Finder<'_> {
-    /// The part of the triangles that each mesh has, from a sample of them.
-    fn triangles(&self) -> Option<HashMap<usize, f64>> {
+    /// The share of the triangles that each part has, from a sample of them.
+    fn triangles(&self, part_of: impl Fn(Prim) -> usize) -> Option<HashMap<usize, f64>> {
         const SAMPLE: usize = 1 << 16;
         if self.accel.levels().is_some() {
             return None;
@@ -459,7 +478,7 @@ impl Finder<'_> {
         let mut parts: HashMap<usize, f64> = HashMap::new();
         let sample: Vec<u32> = (0..geometry.live_count()).step_by(step).map(|i| geometry.live(i)).collect();
         let each = 1.0 / sample.len().max(1) as f64;
-        sample.into_iter().for_each(|prim| *parts.entry(self.mesh((0, prim))).or_default() += each);
+        sample.into_iter().for_each(|prim| *parts.entry(part_of((0, prim))).or_default() += each);
         Some(parts)
     }
 }
@@ -525,6 +544,9 @@ mod tests {
         assert!(found.list.windows(2).all(|pair| pair[0].share >= pair[1].share) && found.list.len() <= MOST);
         let (tests, triangles): (f64, f64) = found.meshes.iter().fold((0.0, 0.0), |a, m| (a.0 + m.tests, a.1 + m.triangles));
         assert!((tests - 1.0).abs() < 1e-9 && (triangles - 1.0).abs() < 1e-6, "{:?}", found.meshes);
+        // Neither mesh has a material.
+        assert!(found.materials.len() == 1 && found.materials[0].name == "no material");
+        assert!((found.materials[0].tests - 1.0).abs() < 1e-9 && (found.materials[0].triangles - 1.0).abs() < 1e-6);
         let cables = of(&found, Cause::OneMesh).map(|finding| finding.text.clone());
         assert!(found.meshes[0].name == "mesh 'cables'" || cables.is_none());
     }

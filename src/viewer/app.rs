@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, RichText, ScrollArea, Ui, ViewportCommand};
 
+use super::animation::Animation;
 use super::command::Command;
 use super::dialogs::{FileDialog, SystemDialog};
 use super::gpu;
@@ -33,6 +34,7 @@ pub struct App {
     state: State,
     commands: Commands,
     screenshot: Option<Screenshot>,
+    animation: Option<Animation>,
     pace: Pace,
     /// How long this thread has worked for the present frame, besides having it drawn.
     own_work: Duration,
@@ -77,9 +79,16 @@ impl App {
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
         let layout = if options.is_scripted() { SCRIPTED } else { 0 };
-        let app = Self { state, commands: Vec::new(), screenshot, pace: Pace::default(), own_work: Duration::ZERO, layout };
+        let animation = options.animate.clone().map(Animation::new);
+        let app =
+            Self { state, commands: Vec::new(), screenshot, animation, pace: Pace::default(), own_work: Duration::ZERO, layout };
         app.follow_settings(&cc.egui_ctx);
         Ok(app)
+    }
+
+    /// Whether the command line drives it.
+    const fn is_scripted(&self) -> bool {
+        self.screenshot.is_some() || self.animation.is_some()
     }
 
     /// What the window knows: for tests.
@@ -250,7 +259,7 @@ impl eframe::App for App {
             self.take_dropped(ctx);
             panels::menu::keys(ctx, &self.state, &mut self.commands);
         }
-        if self.screenshot.is_none() {
+        if !self.is_scripted() {
             let hidden = |i: &egui::InputState| i.viewport().minimized == Some(true) || i.viewport().occluded == Some(true);
             self.state.hide(ctx.input(hidden));
         }
@@ -258,6 +267,9 @@ impl eframe::App for App {
         self.state.advance();
         if let Some(screenshot) = self.screenshot.as_mut().filter(|_| !is_repeated(ctx)) {
             screenshot.advance(ctx, &self.state, &mut self.pace, &mut self.commands);
+        }
+        if let Some(animation) = self.animation.as_mut().filter(|_| !is_repeated(ctx)) {
+            animation.advance(ctx, &self.state, &mut self.commands);
         }
         if let Some(due) = self.state.play_on() {
             ctx.request_repaint_after(due);
@@ -305,11 +317,11 @@ impl eframe::App for App {
 
     /// A scripted window neither leaves its sizes to the next one nor, under names of its own, takes those of the last.
     fn persist_egui_memory(&self) -> bool {
-        self.screenshot.is_none()
+        !self.is_scripted()
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        if self.screenshot.is_none() {
+        if !self.is_scripted() {
             eframe::set_value(storage, SETTINGS, &self.state.settings);
         }
     }

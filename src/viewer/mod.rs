@@ -2,8 +2,10 @@
 //! do the long work, [`gpu`] puts the 3D view on the screen.
 
 pub mod actions;
+mod animation;
 pub mod app;
 pub mod beside;
+mod capture;
 pub mod checks;
 pub mod command;
 pub mod dialogs;

@@ -53,6 +53,8 @@ pub struct ViewerOptions {
     pub endure: bool,
     /// Save a picture of the window here once everything is there, and close.
     pub screenshot: Option<PathBuf>,
+    /// Show the window at work, and save a picture of each step into this folder.
+    pub animate: Option<PathBuf>,
     /// Threads that load, build and measure; 0 for one a core.
     pub threads: usize,
     /// The memory budget in MiB.
@@ -62,7 +64,7 @@ pub struct ViewerOptions {
 impl ViewerOptions {
     /// Whether the window is driven by the command line alone: then nothing of the last time shows.
     pub const fn is_scripted(&self) -> bool {
-        self.screenshot.is_some()
+        self.screenshot.is_some() || self.animate.is_some()
     }
 
     /// Puts what is set into the settings.

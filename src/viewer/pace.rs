@@ -8,6 +8,12 @@ use crate::lab::statistics::median;
 
 /// A frame whose work takes longer is late.
 const LATE: Duration = Duration::from_millis(16);
+/// Times of work are counted in steps of this many microseconds.
+const BIN_US: u128 = 100;
+/// Steps; what takes longer is in the last.
+const BINS: usize = 1000;
+/// The part of all frames that [`OwnWork::usual`] covers.
+const USUAL: f64 = 0.99;
 
 /// What a scripted window says of itself at the end.
 #[derive(Clone, Debug, Default)]
@@ -22,6 +28,8 @@ pub struct Pace {
     own_longest: Duration,
     /// Frames for which it worked longer than [`LATE`].
     own_late: u64,
+    /// Frames by how long it worked for them.
+    own_work: OwnWork,
     /// The first picture of all.
     first: Option<Answer>,
     /// How soon the first picture came after each change of the camera.
@@ -54,6 +62,7 @@ impl Pace {
     pub fn own_work(&mut self, time: Duration) {
         self.own_longest = self.own_longest.max(time);
         self.own_late += u64::from(time > LATE);
+        self.own_work.add(time);
     }
 
     /// Takes note of the answer to a change of the camera.
@@ -73,11 +82,12 @@ impl Pace {
         let first = self.first.map(|a| format!("first picture (1/{} resolution) {} later; ", a.step, format::duration(a.secs)));
         let full = self.full.map(|secs| format!("one sample a pixel after {}; ", format::duration(secs)));
         let frames = format!(
-            "longest frame {} while loading or building, {} in all, of {}; work of the window's thread besides drawing {} at most, more than 16 ms in {}{}",
+            "longest frame {} while loading or building, {} in all, of {}; work of the window's thread besides drawing {} at most, {} or less in 99 % of them, more than 16 ms in {}{}",
             format::duration(self.longest_busy),
             format::duration(self.longest),
             format::count(self.frames),
             format::duration(self.own_longest.as_secs_f64()),
+            format::or_missing(self.own_work.usual(), |time| format::duration(time.as_secs_f64())),
             format::count(self.own_late),
             crate::sys::peak_memory_bytes()
                 .map(|peak| format!("; at most {} of memory", format::bytes(peak)))
@@ -94,6 +104,29 @@ impl Pace {
     }
 }
 
+/// Frames by how long the window's thread worked for them.
+#[derive(Clone, Debug, Default)]
+struct OwnWork(Vec<u32>);
+
+impl OwnWork {
+    fn add(&mut self, time: Duration) {
+        self.0.resize(BINS, 0);
+        let bin = usize::try_from(time.as_micros() / BIN_US).unwrap_or(BINS);
+        self.0[bin.min(BINS - 1)] += 1;
+    }
+
+    /// What it worked at most for 99 of 100 frames; nothing before the first frame, and where that is beyond the last step.
+    fn usual(&self) -> Option<Duration> {
+        let most = USUAL * self.0.iter().map(|n| f64::from(*n)).sum::<f64>();
+        let mut so_far = 0.0;
+        let bin = self.0.iter().take(BINS - 1).position(|n| {
+            so_far += f64::from(*n);
+            so_far >= most && so_far > 0.0
+        })?;
+        Some(Duration::from_micros(u64::try_from((bin as u128 + 1) * BIN_US).unwrap_or(u64::MAX)))
+    }
+}
+
 /// The median and the longest of some answers.
 fn answers(what: &str, answers: &[Answer]) -> String {
     let Some(coarsest) = answers.iter().map(|a| a.step).max() else { return String::new() };
@@ -101,4 +134,20 @@ fn answers(what: &str, answers: &[Answer]) -> String {
     let longest = secs.iter().copied().fold(0.0, f64::max);
     let (usual, longest, n) = (format::duration(median(&secs)), format::duration(longest), secs.len());
     format!("{what} {usual}, at most {longest} (n = {n}, 1/{coarsest} resolution or finer); ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ninety_nine_of_a_hundred_frames_are_within() {
+        let mut work = OwnWork::default();
+        assert_eq!(work.usual(), None);
+        (1..=100).for_each(|ms| work.add(Duration::from_millis(ms) / 2));
+        // The hundredth is longer: 50 ms.
+        assert_eq!(work.usual(), Some(Duration::from_micros(49_600)));
+        (0..10).for_each(|_| work.add(Duration::from_secs(1)));
+        assert_eq!(work.usual(), None, "one in a hundred takes longer than is told apart");
+    }
 }

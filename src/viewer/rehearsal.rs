@@ -1,10 +1,12 @@
 //! A scripted hand for measuring how soon the window answers: it turns the camera, then goes back
-//! and forth between two structures that are kept. Each step begins once the one before is answered.
+//! and forth between two structures that are kept. Each step begins once the one before is answered. In the Structure
+//! workspace each turn also selects a cell somewhere in the tree, in the Ray workspace it goes on to another step.
 
 use super::command::Command;
 use super::navigation;
 use super::pace::Pace;
 use super::panels::Commands;
+use super::settings::Workspace;
 use super::state::State;
 use glam::Vec2;
 
@@ -53,6 +55,7 @@ impl Rehearsal {
         let first = *self.first.get_or_insert(id);
         let (step, command) = if self.turns < TURNS {
             self.turns += 1;
+            commands.extend(also(state, self.turns));
             (Step::Turn, Command::Camera(navigation::orbit(&state.camera, TURN, 600.0)))
         } else if self.switches == 0 {
             self.switches += 1;
@@ -66,5 +69,17 @@ impl Rehearsal {
         commands.push(command);
         self.waiting = Some((answer.request, step));
         false
+    }
+}
+
+/// What the workspace has to do besides, on a turn.
+fn also(state: &State, turn: u32) -> Option<Command> {
+    match state.settings.workspace {
+        Workspace::Structure => {
+            let rows = state.tree.outline.as_ref()?.len();
+            Some(Command::SelectRow(u32::try_from(u64::from(rows) * u64::from(turn) / u64::from(TURNS + 1)).unwrap_or(0)))
+        }
+        Workspace::Ray => Some(Command::Step(state.rays.lead, state.rays.last() * turn as usize / TURNS as usize)),
+        Workspace::View | Workspace::Compare | Workspace::Check => None,
     }
 }

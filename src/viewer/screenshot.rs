@@ -1,13 +1,12 @@
 //! Takes a picture of the window once everything in it is there, and closes it: how the pictures of
 //! the README are made.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{ColorImage, Context, ScreenshotCallback, ViewportCommand};
+use eframe::egui::{Context, ViewportCommand};
 
+use super::capture::{self, Capture};
 use super::command::Command;
 use super::endurance::Endurance;
 use super::options::ViewerOptions;
@@ -19,7 +18,6 @@ use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::accel::registry;
 use crate::geometry::Axis;
-use crate::sys::{folder_of, temporary_in};
 
 /// What is still to be done.
 #[derive(Debug)]
@@ -40,8 +38,7 @@ pub struct Screenshot {
     endured: String,
     stage: Stage,
     start: Instant,
-    /// The picture, once the window has it.
-    taken: Arc<Mutex<Option<Arc<ColorImage>>>>,
+    capture: Capture,
 }
 
 #[derive(Debug, PartialEq, Eq)]
@@ -84,7 +81,7 @@ impl Screenshot {
             endured: String::new(),
             stage: Stage::Settling,
             start: Instant::now(),
-            taken: Arc::default(),
+            capture: Capture::default(),
         }
     }
 
@@ -93,19 +90,6 @@ impl Screenshot {
         ctx.request_repaint_after(Duration::from_millis(20));
         let settled = (!state.is_busy() && (state.shown.is_some() || state.error.is_some())) || self.start.elapsed() > PATIENCE;
         match self.stage {
-            Stage::Settling if settled && self.rehearsal.is_some() => self.stage = Stage::Rehearsing,
-            Stage::Rehearsing => {
-                if self.rehearsal.as_mut().is_none_or(|r| r.advance(state, pace, commands)) {
-                    (self.rehearsal, self.stage) = (None, Stage::Settling);
-                }
-            }
-            Stage::Settling if settled && self.endurance.is_some() => self.stage = Stage::Enduring,
-            Stage::Enduring => {
-                if self.endurance.as_mut().is_none_or(|endurance| endurance.advance(state, commands)) {
-                    self.endured = self.endurance.take().map(|endurance| endurance.report()).unwrap_or_default();
-                    self.stage = Stage::Settling;
-                }
-            }
             Stage::Settling if settled && self.errors.is_some() => self.fill(state, commands),
             Stage::Settling if settled && self.select.is_some() => {
                 let outline = state.tree.outline.as_ref();
@@ -120,6 +104,19 @@ impl Screenshot {
                     Command::Step(column, _) => Command::Step(column, state.rays.last() * 2 / 3),
                     other => other,
                 });
+            }
+            Stage::Settling if settled && self.rehearsal.is_some() => self.stage = Stage::Rehearsing,
+            Stage::Rehearsing => {
+                if self.rehearsal.as_mut().is_none_or(|r| r.advance(state, pace, commands)) {
+                    (self.rehearsal, self.stage) = (None, Stage::Settling);
+                }
+            }
+            Stage::Settling if settled && self.endurance.is_some() => self.stage = Stage::Enduring,
+            Stage::Enduring => {
+                if self.endurance.as_mut().is_none_or(|endurance| endurance.advance(state, commands)) {
+                    self.endured = self.endurance.take().map(|endurance| endurance.report()).unwrap_or_default();
+                    self.stage = Stage::Settling;
+                }
             }
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
@@ -139,18 +136,12 @@ impl Screenshot {
             Stage::Settling if settled && !self.measure => self.stage = Stage::Still(0),
             Stage::Still(n) if n < STILL_FRAMES => self.stage = if settled { Stage::Still(n + 1) } else { Stage::Settling },
             Stage::Still(_) => {
-                let taken = Arc::clone(&self.taken);
-                let callback =
-                    ScreenshotCallback::new(move |image| *taken.lock().unwrap_or_else(PoisonError::into_inner) = Some(image));
-                ctx.send_viewport_cmd(ViewportCommand::Screenshot(callback));
+                self.capture.ask(ctx);
                 self.stage = Stage::Asked;
             }
             Stage::Asked => {
-                let image = self.taken.lock().unwrap_or_else(PoisonError::into_inner).take();
-                if let Some(image) = image {
-                    if let Err(why) = save(&self.path, &image) {
-                        eprintln!("boxwood: Can't write {}: {why}", self.path.display());
-                    }
+                if let Some(image) = self.capture.take() {
+                    capture::save(&self.path, &image);
                     eprintln!("{}{}", self.endured, pace.report(state));
                     self.stage = Stage::Done;
                     ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -189,17 +180,4 @@ impl Screenshot {
             None => {}
         }
     }
-}
-
-/// Writes a PNG to a temporary file, then renames it.
-fn save(path: &Path, image: &ColorImage) -> std::io::Result<()> {
-    let bytes: Vec<u8> = image.pixels.iter().flat_map(|p| [p.r(), p.g(), p.b()]).collect();
-    let [width, height] = image.size.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
-    let mut file = temporary_in(folder_of(path))?;
-    let encoder = image::codecs::png::PngEncoder::new(std::io::BufWriter::new(&mut file));
-    image::ImageEncoder::write_image(encoder, &bytes, width, height, image::ExtendedColorType::Rgb8)
-        .map_err(std::io::Error::other)?;
-    file.flush()?;
-    file.persist(path)?;
-    Ok(())
 }

@@ -1,16 +1,16 @@
-//! Why rays of this view are slow, in a few sentences, and what each mesh costs.
+//! Why rays of this view are slow, in a few sentences, and what each mesh and each material costs.
 
 use eframe::egui::{Button, CollapsingHeader, Grid, Label, ProgressBar, RichText, Ui};
 
 use super::{Commands, empty, heading};
-use crate::lab::findings::{Finding, Findings};
+use crate::lab::findings::{Finding, Findings, PartCost};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
-/// Meshes that are listed.
-const MESHES: usize = 12;
+/// Meshes or materials that are listed.
+const PARTS: usize = 12;
 
 /// Draws the section.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -48,8 +48,10 @@ fn list(ui: &mut Ui, found: &Findings, commands: &mut Commands) {
     for (i, finding) in found.list.iter().enumerate() {
         one(ui, i, finding, commands);
     }
-    if found.meshes.len() > 1 {
-        CollapsingHeader::new("Cost by mesh").show(ui, |ui| meshes(ui, found));
+    for (what, parts) in [("mesh", &found.meshes), ("material", &found.materials)] {
+        if parts.len() > 1 {
+            CollapsingHeader::new(format!("Cost by {what}")).show(ui, |ui| table(ui, what, parts));
+        }
     }
 }
 
@@ -70,22 +72,22 @@ fn one(ui: &mut Ui, i: usize, finding: &Finding, commands: &mut Commands) {
     });
 }
 
-fn meshes(ui: &mut Ui, found: &Findings) {
+fn table(ui: &mut Ui, what: &'static str, parts: &[PartCost]) {
     let palette = Palette::in_ui(ui);
-    Grid::new("cost by mesh").num_columns(3).striped(true).show(ui, |ui| {
+    Grid::new(("cost by", what)).num_columns(3).striped(true).show(ui, |ui| {
         for (name, help) in [
-            ("mesh", "As the file calls it."),
+            (what, "As the file calls it."),
             ("tests", "Its part of the triangle tests."),
             ("triangles", "Its part of the triangles."),
         ] {
             ui.label(RichText::new(name).small().color(palette.dim)).on_hover_text(help);
         }
         ui.end_row();
-        for mesh in found.meshes.iter().take(MESHES) {
-            ui.add(Label::new(&mesh.name).truncate())
-                .on_hover_text(format!("{} of its tests are hits.", format::percent(mesh.hits)));
-            ui.label(format::percent(mesh.tests));
-            ui.label(format::percent(mesh.triangles));
+        for part in parts.iter().take(PARTS) {
+            ui.add(Label::new(&part.name).truncate())
+                .on_hover_text(format!("{} of its tests are hits.", format::percent(part.hits)));
+            ui.label(format::percent(part.tests));
+            ui.label(format::percent(part.triangles));
             ui.end_row();
         }
     });
