@@ -65,6 +65,21 @@ pub struct PartCost {
     pub hits: f64,
 }
 
+/// A triangle whose box is far larger than it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LooseTriangle {
+    /// Its number within its level, and the mesh that it is of.
+    pub name: String,
+    /// The area of its box over what it is for one of its area across two axes; infinite for a triangle without area.
+    pub misfit: f64,
+    /// How often it was tested.
+    pub tests: u64,
+    /// How often it was hit.
+    pub hits: u64,
+    /// The row of a leaf that it was tested in.
+    pub row: Option<u32>,
+}
+
 /// Everything that was found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
@@ -74,6 +89,8 @@ pub struct Findings {
     pub meshes: Vec<PartCost>,
     /// The same of materials.
     pub materials: Vec<PartCost>,
+    /// The tested triangles whose boxes fit worst, the loosest first.
+    pub loosest: Vec<LooseTriangle>,
     /// Rays that were followed.
     pub rays: usize,
     /// Nodes that a ray enters, on average.
@@ -92,6 +109,8 @@ const SECS: f64 = 2.0;
 const CHUNK: usize = 64;
 /// At most so many sentences.
 const MOST: usize = 5;
+/// At most so many triangles whose boxes fit badly.
+const LOOSEST: usize = 8;
 /// A box of more than so many times the area that a triangle across two axes has is loose.
 const LOOSE: f64 = 4.0;
 /// Leaves of more triangles are full.
@@ -261,7 +280,7 @@ impl<'a> Finder<'a> {
         list.truncate(MOST);
         let over = |n: f64| n / self.tally.rays.max(1) as f64;
         let (rays, nodes, tests) = (self.tally.rays, over(self.visits), over(self.tests));
-        Findings { list, meshes, materials, rays, nodes, tests, costs: self.costs }
+        Findings { list, meshes, materials, loosest: self.loosest(), rays, nodes, tests, costs: self.costs }
     }
 
     /// What so many steps and tests of all rays take of one ray, and as a part of all; without costs a step is a test.
@@ -319,6 +338,23 @@ impl<'a> Finder<'a> {
         let steps = (tests - hits) / self.mean_leaf();
         let row = self.row_with(loose.iter().map(|(_, tested)| *tested));
         Some(self.finding(Cause::LooseBoxes, text, self.weigh(steps, tests - hits), row))
+    }
+
+    /// The triangles whose boxes fit worst, of those that are loose.
+    fn loosest(&self) -> Vec<LooseTriangle> {
+        let with_misfit = |(prim, tested): (&Prim, &Tested)| (self.looseness(*prim), *prim, *tested);
+        let mut loose: Vec<(f64, Prim, Tested)> =
+            self.tally.tests.iter().map(with_misfit).filter(|(misfit, ..)| *misfit > LOOSE).collect();
+        loose.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        loose.truncate(LOOSEST);
+        let one = |(misfit, prim, tested): (f64, Prim, Tested)| LooseTriangle {
+            name: format!("{} of {}", prim.1, self.name(self.mesh(prim))),
+            misfit,
+            tests: tested.tests,
+            hits: tested.hits,
+            row: self.row_with(std::iter::once(tested)),
+        };
+        loose.into_iter().map(one).collect()
     }
 
     /// Tests that were heard of: where triangles are looked at several at a time those that are left in doubt.
@@ -544,6 +580,9 @@ mod tests {
         assert!(found.list.windows(2).all(|pair| pair[0].share >= pair[1].share) && found.list.len() <= MOST);
         let (tests, triangles): (f64, f64) = found.meshes.iter().fold((0.0, 0.0), |a, m| (a.0 + m.tests, a.1 + m.triangles));
         assert!((tests - 1.0).abs() < 1e-9 && (triangles - 1.0).abs() < 1e-6, "{:?}", found.meshes);
+        assert!(found.loosest.windows(2).all(|pair| pair[0].misfit >= pair[1].misfit) && found.loosest.len() == LOOSEST);
+        assert!(found.loosest.iter().all(|t| t.name.contains("'cables'") && t.misfit > LOOSE && t.tests >= t.hits));
+        assert!(found.loosest.iter().all(|t| t.row.is_some_and(|row| outline.row(row).is_leaf())));
         // Neither mesh has a material.
         assert!(found.materials.len() == 1 && found.materials[0].name == "no material");
         assert!((found.materials[0].tests - 1.0).abs() < 1e-9 && (found.materials[0].triangles - 1.0).abs() < 1e-6);

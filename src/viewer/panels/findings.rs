@@ -3,7 +3,7 @@
 use eframe::egui::{Button, CollapsingHeader, Grid, Label, ProgressBar, RichText, Ui};
 
 use super::{Commands, empty, heading};
-use crate::lab::findings::{Finding, Findings, PartCost};
+use crate::lab::findings::{Finding, Findings, LooseTriangle, PartCost};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::state::State;
@@ -53,6 +53,9 @@ fn list(ui: &mut Ui, found: &Findings, commands: &mut Commands) {
             CollapsingHeader::new(format!("Cost by {what}")).show(ui, |ui| table(ui, what, parts));
         }
     }
+    if !found.loosest.is_empty() {
+        CollapsingHeader::new("Loosest triangles").show(ui, |ui| loosest(ui, &found.loosest, commands));
+    }
 }
 
 fn one(ui: &mut Ui, i: usize, finding: &Finding, commands: &mut Commands) {
@@ -88,6 +91,31 @@ fn table(ui: &mut Ui, what: &'static str, parts: &[PartCost]) {
                 .on_hover_text(format!("{} of its tests are hits.", format::percent(part.hits)));
             ui.label(format::percent(part.tests));
             ui.label(format::percent(part.triangles));
+            ui.end_row();
+        }
+    });
+}
+
+/// Triangles by how badly their boxes fit; a click shows where they are.
+fn loosest(ui: &mut Ui, triangles: &[LooseTriangle], commands: &mut Commands) {
+    let palette = Palette::in_ui(ui);
+    Grid::new("loosest triangles").num_columns(3).striped(true).show(ui, |ui| {
+        for (name, help) in [
+            ("triangle", "Its number, and its mesh."),
+            ("misfit", "The area of its box over that of the box around as large a triangle across two axes."),
+            ("tests", "How often this view's rays were tested against it."),
+        ] {
+            ui.label(RichText::new(name).small().color(palette.dim)).on_hover_text(help);
+        }
+        ui.end_row();
+        for triangle in triangles {
+            let help = format!("{} of its tests were hits. Click to select the leaf.", format::count(triangle.hits));
+            let link = ui.add_enabled(triangle.row.is_some(), Button::new(&triangle.name).truncate().frame(false));
+            if let Some(row) = triangle.row.filter(|_| link.on_hover_text(help).clicked()) {
+                commands.push(Command::ShowCause(row));
+            }
+            ui.label(format::number(triangle.misfit));
+            ui.label(format::count(triangle.tests));
             ui.end_row();
         }
     });
