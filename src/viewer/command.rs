@@ -3,7 +3,7 @@
 
 use super::checks::Cell;
 use super::model::Instances;
-use super::settings::{Navigation, OverlaySettings, ThemeChoice, Workspace};
+use super::settings::{Navigation, OverlaySettings, SectionSettings, ThemeChoice, Workspace};
 use super::tradeoffs::{Goodness, Miss, Plot};
 use crate::accel::params::ParamValues;
 use crate::geometry::Axis;
@@ -39,6 +39,8 @@ pub enum Command {
     HeatRange(Option<Range>),
     /// Other boxes and planes.
     Overlay(OverlaySettings),
+    /// Cut the model open elsewhere, or not at all.
+    Section(SectionSettings),
     /// Look from elsewhere.
     Camera(Camera),
     /// Look from where the camera was before its last move.

@@ -7,7 +7,7 @@ use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::geometry::Axis;
 use crate::render::Mode;
-use crate::scene::CameraSpec;
+use crate::scene::{CameraSpec, Section};
 
 /// How the window begins. What is not set comes from the settings of the last time.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +20,8 @@ pub struct ViewerOptions {
     pub mode: Option<Mode>,
     /// From where it is seen at first.
     pub camera: Option<CameraSpec>,
+    /// Where it is cut open at first.
+    pub section: Option<Section>,
     /// The depth of the boxes.
     pub depth: Option<u32>,
     /// Only the boxes of leaves.

@@ -20,6 +20,7 @@ pub mod path;
 pub mod prediction;
 pub mod ray;
 pub mod scene;
+pub mod section;
 pub mod selection;
 pub mod split;
 pub mod stability;

@@ -57,7 +57,6 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
     let Some(model) = &state.model else { return };
     // A picture and the boxes over it are of one view, also while the next picture is on its way.
     let camera = state.picture.as_ref().map_or(state.camera, |p| p.camera);
-    let aspect = size_px[0] as f32 / size_px[1] as f32;
     let base = match state.on_screen() {
         Some(picture) => Base::Picture(Arc::clone(picture)),
         None => Base::Raster(Raster {
@@ -67,7 +66,8 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
         }),
     };
     let overlay = state.shown.as_ref().and(state.overlay.clone());
-    let view = View::new(&camera, model.geometry.space(), aspect);
+    let section = state.section().map(|section| section.scaled(model.geometry.space()));
+    let view = View::new(&camera, model.geometry.space(), size_px[0] as f32 / size_px[1] as f32).within(section);
     // For an audience lines are twice as wide, and everything is enlarged already.
     let lines = if state.presenting { theme::PRESENTED_LINES / theme::PRESENTED } else { 1.0 };
     let list = DrawList {

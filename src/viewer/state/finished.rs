@@ -14,6 +14,7 @@ use crate::viewer::kept::Built;
 use crate::viewer::model::{self, Model};
 use crate::viewer::pick::Picked;
 use crate::viewer::rays::Rays;
+use crate::viewer::settings::SectionSettings;
 use crate::viewer::timings::Timings;
 use crate::viewer::workers;
 
@@ -63,8 +64,10 @@ impl State {
         (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
         self.checks.opened();
         let ray = self.rays.asked.filter(|_| reopened.is_some());
+        let section = self.first_section.take();
         if reopened.is_none() {
             self.bookmarks.clear();
+            self.settings.section = SectionSettings { on: section.is_some(), at: section.unwrap_or_default() };
         }
         self.shared.give_back(self.tree.outline.take());
         self.tree.clear();

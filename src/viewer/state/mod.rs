@@ -13,6 +13,7 @@ mod following;
 mod keeping;
 mod refresh;
 mod saving;
+mod sectioning;
 mod trading;
 
 pub use bookmarks::Bookmark;
@@ -47,13 +48,14 @@ use super::workers::{
 };
 use super::workspace_file::WorkspaceFile;
 use crate::accel::{CellId, cell};
+use crate::geometry::HalfSpace;
 use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
 use crate::render::sampler::SamplerKind;
 use crate::render::{self, Mode, Picture, Range, Renderer, Tone};
 use crate::scene::texture::Detail;
-use crate::scene::{Camera, CameraSpec};
+use crate::scene::{Camera, CameraSpec, Section};
 use crate::task::Pool;
 use glam::Vec2;
 
@@ -75,6 +77,8 @@ pub struct State {
     framed: Option<(Camera, [u32; 2])>,
     /// Where the first model is to be seen from, instead of where it suits.
     pub first_camera: Option<CameraSpec>,
+    /// Where the first model is cut open.
+    pub first_section: Option<Section>,
     /// For amounts: fixed by the user, or from the picture.
     pub range: Option<Range>,
     /// The newest picture of the open model.
@@ -195,6 +199,8 @@ struct Asked {
     key: Key,
     model: u64,
     camera: Camera,
+    /// What of the world is left.
+    section: Option<HalfSpace>,
     mode: Mode,
     range: Option<Range>,
     size_px: [u32; 2],
@@ -238,6 +244,7 @@ impl State {
             camera: Camera::framing(&crate::geometry::Aabb::EMPTY, glam::Vec3::Z, glam::Vec3::Y, 1.0),
             framed: None,
             first_camera: None,
+            first_section: None,
             range: None,
             picture: None,
             overlay: None,
@@ -387,6 +394,7 @@ impl State {
                 }
                 self.settings.overlay = overlay;
             }
+            Command::Section(section) => self.cut(section),
             Command::Camera(camera) => self.look(camera, Kind::Hand),
             Command::CameraBack => self.camera = self.cameras.back(self.camera).unwrap_or(self.camera),
             Command::CameraForward => self.camera = self.cameras.forward(self.camera).unwrap_or(self.camera),
@@ -483,7 +491,7 @@ impl State {
     }
 
     fn pick(&mut self, at: Vec2) {
-        let ray = self.camera.ray(&self.camera.frame(), at, self.aspect());
+        let ray = self.ray_at(at);
         (self.tree.selecting, self.tree.restoring) = (None, false);
         if self.settings.workspace == Workspace::Ray {
             self.follow(ray);
