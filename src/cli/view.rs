@@ -72,6 +72,9 @@ pub struct Args {
     /// With that, structures whose steps stand beside, at most three, between commas.
     #[arg(long, value_name = "IDS", value_delimiter = ',', requires = "follow")]
     pub beside: Vec<One>,
+    /// Compare the whole view with brute force before the picture is saved.
+    #[arg(long, requires = "screenshot", conflicts_with_all = ["select", "measure", "check", "errors"])]
+    pub check_brute: bool,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
@@ -108,6 +111,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         try_plane: args.try_plane,
         follow: args.follow,
         beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),
+        brute: args.check_brute,
         pace: args.pace,
         endure: args.endure,
         screenshot: args.screenshot,

@@ -274,6 +274,11 @@ fn ray(list: &mut List, state: &State) {
     let leaf = rays.columns.get(rays.lead).and_then(|lead| lead.followed.leaf(rays.at, true));
     list.add("Next leaf", go(leaf.unwrap_or(0))).if_possible(there && leaf.is_some());
     let playing = rays.playing.is_some();
+    let compared = state.can_compare_with_brute_force();
+    list.add("Mark a rectangle to check with brute force", Command::MarkRectangle(true)).if_possible(compared);
+    list.add("Check the whole view with brute force", Command::CheckByBrute(None)).if_possible(compared);
+    let differs = !state.brute.unlike().0.is_empty();
+    list.add("Follow a ray that differs from brute force", Command::FollowUnlike(state.brute.next)).if_possible(differs);
     list.add(if playing { "Pause the ray" } else { "Play the ray" }, Command::Play(!playing)).if_possible(there);
 }
 

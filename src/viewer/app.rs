@@ -137,9 +137,13 @@ impl App {
             Workspace::View => {
                 panels::statistics::show(ui, state, commands);
                 panels::selection::show(ui, state, commands);
+                panels::brute::show(ui, state, commands);
             }
             Workspace::Structure => panels::node::show(ui, state, commands),
-            Workspace::Ray => panels::ray::show(ui, state, commands),
+            Workspace::Ray => {
+                panels::ray::show(ui, state, commands);
+                panels::brute::show(ui, state, commands);
+            }
             Workspace::Compare => panels::error_side::show(ui, state, commands),
             Workspace::Check => panels::check::show(ui, state, commands),
         };
@@ -269,7 +273,7 @@ impl eframe::App for App {
         }
         // Progress bars move; everything else wakes the window itself.
         let state = &self.state;
-        let measured = state.is_measuring() || state.is_checking();
+        let measured = state.is_measuring() || state.is_checking() || state.brute.running.is_some();
         if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }

@@ -4,6 +4,7 @@
 pub mod actions;
 pub mod app;
 pub mod beside;
+pub mod brute;
 pub mod checks;
 pub mod command;
 pub mod dialogs;

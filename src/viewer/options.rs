@@ -49,6 +49,8 @@ pub struct ViewerOptions {
     pub follow: Option<[f32; 2]>,
     /// Structures whose steps stand beside the shown one's.
     pub beside: Vec<String>,
+    /// With `screenshot`, compare the whole view with brute force first.
+    pub brute: bool,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
     /// Switch structures a thousand times and open fifty models before that, to see what becomes of the memory.

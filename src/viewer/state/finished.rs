@@ -9,6 +9,7 @@ use crate::job::Outcome;
 use crate::render::Mode;
 use crate::scene::texture::Detail;
 use crate::scene::{CameraSpec, Material};
+use crate::viewer::brute::Brute;
 use crate::viewer::history::{Choices, History, Kind};
 use crate::viewer::kept::Built;
 use crate::viewer::model::{self, Model};
@@ -75,6 +76,7 @@ impl State {
         let (beside, kind, speed) = (std::mem::take(&mut self.rays.beside), self.rays.kind, self.rays.speed);
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
         self.shared.give_back(before.columns);
+        self.brute = Brute::default();
         self.awaited = None;
         self.forget_beside();
         self.bring_back();

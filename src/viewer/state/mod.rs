@@ -3,6 +3,7 @@
 
 mod besides;
 mod bookmarks;
+mod brute_force;
 mod causes;
 mod checking;
 mod dialog;
@@ -26,6 +27,7 @@ use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 use super::beside::{Beside, Pauses};
+use super::brute::Brute;
 use super::checks::Checks;
 use super::command::Command;
 use super::dialogs::FileDialog;
@@ -107,6 +109,8 @@ pub struct State {
     trace_pool: Pool,
     /// The ray of the Ray workspace.
     pub rays: Rays,
+    /// The picture compared with brute force.
+    pub brute: Brute,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -259,6 +263,7 @@ impl State {
             requested_beside: None,
             trace_pool: pool.clone(),
             rays: Rays::default(),
+            brute: Brute::default(),
             picked: None,
             error: None,
             answer: None,
@@ -352,6 +357,7 @@ impl State {
             || self.predicting.is_some()
             || self.is_exploring()
             || self.rays.following.is_some()
+            || self.brute.running.is_some()
             || self.saving.is_busy()
             || self.awaited.is_some()
             || drawing
@@ -427,6 +433,10 @@ impl State {
             }
             Command::RayText(text) => self.follow_text(&text),
             Command::CancelFollow => self.rays.following = None,
+            Command::MarkRectangle(mark) => self.mark_rectangle(mark),
+            Command::CheckByBrute(rect) => self.compare_with_brute_force(rect),
+            Command::CancelBrute => self.brute.clear(),
+            Command::FollowUnlike(number) => self.follow_unlike(number),
             Command::Beside(id, beside) => self.follow_beside(id, beside),
             Command::Step(column, step) => self.go_to_step(column, step),
             Command::Play(play) => self.play(play),
@@ -668,6 +678,7 @@ impl State {
         self.advance_causes();
         self.advance_outline();
         self.advance_following();
+        self.advance_brute_force();
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();
