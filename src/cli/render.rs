@@ -18,7 +18,7 @@ use crate::lab::format::{MISSING, bytes, count, duration, number, percent, rate,
 use crate::render::sampler::{SamplerKind, Sampling};
 use crate::render::{self, Job, LinearPicture, Looks, Mode, Still, Until, Work, auto_range};
 use crate::scene::texture::Detail;
-use crate::scene::{CameraSpec, Geometry};
+use crate::scene::{CameraSpec, Geometry, Section};
 use crate::sys;
 use crate::task::{Cancel, Phase, Progress};
 
@@ -59,6 +59,9 @@ pub struct Args {
     size: Size,
     #[command(flatten)]
     look: LookArgs,
+    /// Cut the model open for rays of the camera: x,0.5 leaves what is below the middle along x, -x,0.5 what is above.
+    #[arg(long, value_name = "AXIS,PLACE", allow_hyphen_values = true)]
+    section: Option<Section>,
     #[command(flatten)]
     build: BuildArgs,
     #[command(flatten)]
@@ -94,6 +97,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     let job = Job {
         sampling: Sampling { kind: args.sampler, seed: args.light.seed.seed },
         transport: args.light.transport.transport(),
+        section: args.section.map(|section| section.of(model.geometry.world_bounds())),
         ..Job::new(model.scene, built.accel, camera, args.mode, Arc::new(looks))
     };
     let size = (args.size.width, args.size.height);

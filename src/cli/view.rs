@@ -8,6 +8,7 @@ use super::structures::One;
 use crate::accel::outline::Rank;
 use crate::geometry::Axis;
 use crate::render::Mode;
+use crate::scene::Section;
 
 /// How the window begins. What is not said comes from the last time.
 #[derive(Debug, clap::Args)]
@@ -25,6 +26,9 @@ pub struct Args {
     /// Samples a pixel after which to rest.
     #[arg(long, value_name = "N")]
     pub spp: Option<u32>,
+    /// Cut the model open for the camera: x,0.5 leaves what is below the middle along x, -x,0.5 what is above.
+    #[arg(long, value_name = "AXIS,PLACE", allow_hyphen_values = true)]
+    pub section: Option<Section>,
     /// The depth of the boxes.
     #[arg(long, value_name = "N")]
     pub depth: Option<u32>,
@@ -72,6 +76,9 @@ pub struct Args {
     /// With that, structures whose steps stand beside, at most three, between commas.
     #[arg(long, value_name = "IDS", value_delimiter = ',', requires = "follow")]
     pub beside: Vec<One>,
+    /// Compare the whole view with brute force before the picture is saved.
+    #[arg(long, requires = "screenshot", conflicts_with_all = ["select", "measure", "check", "errors"])]
+    pub check_brute: bool,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
@@ -94,6 +101,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         structure: args.structure.map(|one| one.0.id.to_owned()),
         mode: args.mode,
         camera: args.look.camera,
+        section: args.section,
         depth: args.depth,
         leaves_only: args.leaves_only,
         no_overlay: args.no_overlay,
@@ -107,6 +115,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         try_plane: args.try_plane,
         follow: args.follow,
         beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),
+        brute: args.check_brute,
         pace: args.pace,
         endure: args.endure,
         screenshot: args.screenshot,

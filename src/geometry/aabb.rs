@@ -13,7 +13,7 @@ pub struct Aabb {
 }
 
 /// One of the three coordinate axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[repr(u8)]
 pub enum Axis {
     /// The first coordinate.

@@ -2,6 +2,7 @@
 //! fair, what is counted, and the rows that tables, JSON and reports are made of.
 
 mod boxed;
+mod brute_check;
 mod building;
 pub mod converge;
 mod costs;
@@ -38,6 +39,7 @@ mod turns;
 mod uncut;
 mod volumes;
 
+pub use brute_check::{BruteCheck, MOST as MOST_UNLIKE, PixelRect, UnlikePixel, check_by_brute_force};
 pub use building::{BuiltRow, build_timed};
 pub use costs::{Costs, FitOptions, fit_costs};
 pub use differing::{Differing, differing};

@@ -12,9 +12,9 @@ use super::work::{Watch, Work};
 use super::{Film, Looks, Mode, Transport};
 use crate::accel::probe::Counts;
 use crate::accel::{self, Accel, Hit};
-use crate::geometry::Ray;
 use crate::geometry::num::{floor_index, narrow};
-use crate::scene::{Camera, Scene};
+use crate::geometry::{HalfSpace, Ray};
+use crate::scene::{Camera, Frame, Scene};
 use crate::task::{Cancel, Cancelled, Pool};
 use glam::Vec2;
 
@@ -35,6 +35,8 @@ pub struct Job {
     pub sampling: Sampling,
     /// How far light is followed.
     pub transport: Transport,
+    /// What of the world the camera's rays see, if not all of it; rays that leave what they meet see all.
+    pub section: Option<HalfSpace>,
 }
 
 impl std::fmt::Debug for Job {
@@ -50,14 +52,27 @@ const ROWS: usize = 4;
 type Pixels = Vec<(u32, u32)>;
 
 impl Job {
-    /// With independent samples, and light followed as usual.
+    /// With independent samples, light followed as usual, and nothing cut away.
     pub fn new(scene: Arc<Scene>, accel: Arc<dyn Accel>, camera: Camera, mode: Mode, looks: Arc<Looks>) -> Self {
-        Self { scene, accel, camera, mode, looks, sampling: Sampling::default(), transport: Transport::default() }
+        let (sampling, transport) = (Sampling::default(), Transport::default());
+        Self { scene, accel, camera, mode, looks, sampling, transport, section: None }
     }
 
     /// The camera rays of a sample, row by row.
     pub fn camera_rays(&self, width: u32, height: u32, rows: Range<u32>, sample: u32) -> Vec<Ray> {
         self.rays_of(rows.flat_map(|y| (0..width).map(move |x| (x, y))), [width, height], sample)
+    }
+
+    /// The camera's ray through the middle of a pixel.
+    pub fn middle_ray(&self, (x, y): (u32, u32), [width, height]: [u32; 2]) -> Ray {
+        let size = Vec2::new(width as f32, height as f32);
+        self.ray_at(&self.camera.frame(), Vec2::new(x as f32, y as f32) + Vec2::splat(0.5), size)
+    }
+
+    /// The ray through a point of the picture, in pixels, as far as it is not cut away.
+    fn ray_at(&self, frame: &Frame, at: Vec2, size: Vec2) -> Ray {
+        let ray = self.camera.ray(frame, on_screen(at, size), size.x / size.y);
+        self.section.map_or(ray, |section| section.cut(&ray))
     }
 
     fn rays_of(&self, pixels: impl Iterator<Item = (u32, u32)>, [width, height]: [u32; 2], sample: u32) -> Vec<Ray> {
@@ -67,8 +82,7 @@ impl Job {
             // The first sample is in the pixel's middle, where nothing is made of means.
             let middle = sample == 0 && self.mode != Mode::Path;
             let within = if middle { Vec2::splat(0.5) } else { self.sampling.of(x, y, sample).pair(0) };
-            let at = Vec2::new(x as f32, y as f32) + within;
-            self.camera.ray(&frame, on_screen(at, size), size.x / size.y)
+            self.ray_at(&frame, Vec2::new(x as f32, y as f32) + within, size)
         };
         pixels.map(ray).collect()
     }

@@ -6,14 +6,15 @@ use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
 use super::panels::toolbar;
-use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, ThemeChoice, Workspace};
+use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, SectionSettings, ThemeChoice, Workspace};
 use super::state::State;
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::accel::registry;
+use crate::geometry::Axis;
 use crate::render::Mode;
 use crate::render::sampler::SamplerKind;
-use crate::scene::builtin;
+use crate::scene::{Section, builtin};
 
 /// One thing that can be done.
 #[derive(Clone, Debug)]
@@ -79,6 +80,8 @@ const DEEPER: [KeyboardShortcut; 2] = [with(Modifiers::NONE, Key::CloseBracket),
 /// Boxes on and off.
 const BOXES: KeyboardShortcut = with(Modifiers::NONE, Key::B);
 
+/// One step of moving the section.
+const SECTION_STEP: f32 = 0.05;
 /// One step of enlarging.
 const SCALE_STEP: f32 = 0.25;
 
@@ -141,6 +144,7 @@ pub fn all(state: &State) -> Vec<Action> {
     list.add("Redo", Command::Redo).key(REDO).if_possible(state.choices.has_forward());
     list.group = "View";
     view(&mut list, state);
+    section(&mut list, state);
     list.group = "Boxes";
     boxes(&mut list, state);
     list.group = "Structure";
@@ -191,6 +195,22 @@ fn view(list: &mut List, state: &State) {
     }
     for samples in [1, 16, 64, 256, 1024, 4096] {
         list.add(format!("Samples a pixel: {samples}"), Command::MaxSamples(samples));
+    }
+}
+
+fn section(list: &mut List, state: &State) {
+    let (open, now) = (state.model.is_some(), state.settings.section);
+    let name = if now.on { "Show the whole model, not a section" } else { "Cut the model open" };
+    list.add(name, Command::Section(SectionSettings { on: !now.on, ..now })).if_possible(open);
+    for axis in Axis::ALL {
+        let at = SectionSettings { on: true, at: Section { axis, ..now.at } };
+        list.add(format!("Section across {}", axis.name()), Command::Section(at)).if_possible(open && at != now);
+    }
+    let flipped = SectionSettings { at: Section { side: now.at.side.other(), ..now.at }, ..now };
+    list.add("Flip the section", Command::Section(flipped)).if_possible(open && now.on);
+    for (name, by) in [("Section farther along its axis", SECTION_STEP), ("Section nearer along its axis", -SECTION_STEP)] {
+        let moved = SectionSettings { at: Section { place: (now.at.place + by).clamp(0.0, 1.0), ..now.at }, ..now };
+        list.add(name, Command::Section(moved)).if_possible(open && now.on && moved != now);
     }
 }
 
@@ -254,6 +274,11 @@ fn ray(list: &mut List, state: &State) {
     let leaf = rays.columns.get(rays.lead).and_then(|lead| lead.followed.leaf(rays.at, true));
     list.add("Next leaf", go(leaf.unwrap_or(0))).if_possible(there && leaf.is_some());
     let playing = rays.playing.is_some();
+    let compared = state.can_compare_with_brute_force();
+    list.add("Mark a rectangle to check with brute force", Command::MarkRectangle(true)).if_possible(compared);
+    list.add("Check the whole view with brute force", Command::CheckByBrute(None)).if_possible(compared);
+    let differs = !state.brute.unlike().0.is_empty();
+    list.add("Follow a ray that differs from brute force", Command::FollowUnlike(state.brute.next)).if_possible(differs);
     list.add(if playing { "Pause the ray" } else { "Play the ray" }, Command::Play(!playing)).if_possible(there);
 }
 

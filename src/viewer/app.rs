@@ -75,6 +75,7 @@ impl App {
         let shared = Shared::new(Pool::new("work", options.threads), budget, Arc::new(move || ctx.request_repaint()));
         let mut state = State::new(settings, shared, dialog, Graphics::of(cc.wgpu_render_state.as_ref()))?;
         state.first_camera = options.camera;
+        state.first_section = options.section;
         state.tradeoffs.plot = options.errors.unwrap_or_default();
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
@@ -145,9 +146,13 @@ impl App {
             Workspace::View => {
                 panels::statistics::show(ui, state, commands);
                 panels::selection::show(ui, state, commands);
+                panels::brute::show(ui, state, commands);
             }
             Workspace::Structure => panels::node::show(ui, state, commands),
-            Workspace::Ray => panels::ray::show(ui, state, commands),
+            Workspace::Ray => {
+                panels::ray::show(ui, state, commands);
+                panels::brute::show(ui, state, commands);
+            }
             Workspace::Compare => panels::error_side::show(ui, state, commands),
             Workspace::Check => panels::check::show(ui, state, commands),
         };
@@ -157,7 +162,10 @@ impl App {
             let tree = Panel::left(id("tree")).default_size(theme::TREE_PANEL).resizable(true);
             tree.show(ui, |ui| {
                 // The tree takes what the settings below it leave.
-                Panel::bottom(id("below the tree")).frame(Frame::NONE).show(ui, |ui| panels::overlay::show(ui, state, commands));
+                Panel::bottom(id("below the tree")).frame(Frame::NONE).show(ui, |ui| {
+                    panels::overlay::show(ui, state, commands);
+                    panels::section::show(ui, state, commands);
+                });
                 CentralPanel::no_frame().show(ui, |ui| panels::tree::show(ui, state, commands));
             });
         } else {
@@ -168,6 +176,7 @@ impl App {
                     panels::structure::show(ui, state, commands);
                     ui.separator();
                     panels::overlay::show(ui, state, commands);
+                    panels::section::show(ui, state, commands);
                 });
             });
         }
@@ -276,7 +285,7 @@ impl eframe::App for App {
         }
         // Progress bars move; everything else wakes the window itself.
         let state = &self.state;
-        let measured = state.is_measuring() || state.is_checking();
+        let measured = state.is_measuring() || state.is_checking() || state.brute.running.is_some();
         if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }

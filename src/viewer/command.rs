@@ -3,12 +3,12 @@
 
 use super::checks::Cell;
 use super::model::Instances;
-use super::settings::{Navigation, OverlaySettings, ThemeChoice, Workspace};
+use super::settings::{Navigation, OverlaySettings, SectionSettings, ThemeChoice, Workspace};
 use super::tradeoffs::{Goodness, Miss, Plot};
 use crate::accel::params::ParamValues;
 use crate::geometry::Axis;
 use crate::geometry::tri::TestKind;
-use crate::lab::RayKind;
+use crate::lab::{PixelRect, RayKind};
 use crate::render::sampler::SamplerKind;
 use crate::render::{Mode, Range, Tone};
 use crate::scene::Camera;
@@ -39,6 +39,8 @@ pub enum Command {
     HeatRange(Option<Range>),
     /// Other boxes and planes.
     Overlay(OverlaySettings),
+    /// Cut the model open elsewhere, or not at all.
+    Section(SectionSettings),
     /// Look from elsewhere.
     Camera(Camera),
     /// Look from where the camera was before its last move.
@@ -75,6 +77,14 @@ pub enum Command {
     RayText(String),
     /// Stop following a ray.
     CancelFollow,
+    /// Let the next drag in the view mark a rectangle that is compared with brute force, or no longer.
+    MarkRectangle(bool),
+    /// Compare a rectangle of the view, or all of it, with brute force.
+    CheckByBrute(Option<PixelRect>),
+    /// Stop that.
+    CancelBrute,
+    /// Follow the ray of a pixel that differs, by its number.
+    FollowUnlike(usize),
     /// Show a structure's steps beside the shown one's, or hide them.
     Beside(&'static str, bool),
     /// Go to a step of a column of steps.

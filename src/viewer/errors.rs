@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::kept::Key;
 use super::workers::{Developing, Erring, Referring};
+use crate::geometry::HalfSpace;
 use crate::lab::ImageErrors;
 use crate::lab::converge::{REFERENCE_FACTOR, Reference};
 use crate::render::sampler::SamplerKind;
@@ -21,6 +22,8 @@ pub struct View {
     pub textured: Option<Detail>,
     /// From where it is seen.
     pub camera: Camera,
+    /// What of the world is left.
+    pub section: Option<HalfSpace>,
     /// Columns and rows.
     pub size_px: [u32; 2],
     /// What samples are made of.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::command::Command;
 use super::pick::Picked;
-use super::settings::{OverlaySettings, Settings};
+use super::settings::{OverlaySettings, SectionSettings, Settings};
 use crate::geometry::tri::TestKind;
 
 /// The most steps that are remembered.
@@ -33,6 +33,8 @@ pub enum Kind {
     Params,
     /// Moving a slider of the overlay.
     Overlay,
+    /// Moving the section.
+    Section,
 }
 
 impl<T> Default for History<T> {
@@ -89,6 +91,8 @@ pub struct Choices {
     params: std::collections::BTreeMap<String, std::collections::BTreeMap<String, String>>,
     test: TestKind,
     overlay: OverlaySettings,
+    #[serde(default)]
+    section: SectionSettings,
     /// What is selected.
     #[serde(skip)]
     pub picked: Option<Picked>,
@@ -102,6 +106,7 @@ impl Choices {
             params: settings.params.clone(),
             test: settings.test,
             overlay: settings.overlay,
+            section: settings.section,
             picked: picked.cloned(),
         }
     }
@@ -112,6 +117,7 @@ impl Choices {
         settings.params.clone_from(&self.params);
         settings.test = self.test;
         settings.overlay = self.overlay;
+        settings.section = self.section;
     }
 
     /// The kind of change that a command makes to them, if it makes one at once.
@@ -120,6 +126,7 @@ impl Choices {
             Command::Structure(_) | Command::Test(_) | Command::OpenCase(_) => Some(Kind::Single),
             Command::Params(_) => Some(Kind::Params),
             Command::Overlay(_) => Some(Kind::Overlay),
+            Command::Section(_) => Some(Kind::Section),
             _ => None,
         }
     }

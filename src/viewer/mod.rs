@@ -6,6 +6,7 @@ mod animation;
 pub mod app;
 pub mod beside;
 mod capture;
+pub mod brute;
 pub mod checks;
 pub mod command;
 pub mod dialogs;

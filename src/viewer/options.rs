@@ -7,7 +7,7 @@ use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::geometry::Axis;
 use crate::render::Mode;
-use crate::scene::CameraSpec;
+use crate::scene::{CameraSpec, Section};
 
 /// How the window begins. What is not set comes from the settings of the last time.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +20,8 @@ pub struct ViewerOptions {
     pub mode: Option<Mode>,
     /// From where it is seen at first.
     pub camera: Option<CameraSpec>,
+    /// Where it is cut open at first.
+    pub section: Option<Section>,
     /// The depth of the boxes.
     pub depth: Option<u32>,
     /// Only the boxes of leaves.
@@ -47,6 +49,8 @@ pub struct ViewerOptions {
     pub follow: Option<[f32; 2]>,
     /// Structures whose steps stand beside the shown one's.
     pub beside: Vec<String>,
+    /// With `screenshot`, compare the whole view with brute force first.
+    pub brute: bool,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
     /// Switch structures a thousand times and open fifty models before that, to see what becomes of the memory.

@@ -8,9 +8,9 @@ use super::gpu::{BoxInstance, Overlay, Ruler, View};
 use super::settings::{BoxColor, OverlaySettings};
 use super::theme;
 use crate::accel::Accel;
-use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Split, bounds_in_scene, walk_below};
+use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Shape, Split, bounds_in_scene, walk_below};
 use crate::accel::outline::{Outline, Row};
-use crate::geometry::{Aabb, Axis};
+use crate::geometry::{Aabb, Axis, HalfSpace};
 use crate::task::{Cancel, Cancelled};
 
 /// What an overlay is made for.
@@ -140,7 +140,8 @@ impl Collector<'_> {
     fn visit(&mut self, accel: &dyn Accel, cell: &Cell, row: Option<Row>) -> Descend {
         let s = &self.wanted.settings;
         let bounds = bounds_in_scene(accel, cell);
-        let Some(px) = self.ruler.pixels(&bounds) else {
+        // What the section cuts away is as good as out of view.
+        let Some(px) = self.ruler.pixels(&bounds).filter(|_| !self.is_cut_away(&bounds)) else {
             self.more |= !cell.is_leaf();
             self.total += usize::from(self.wants_box(cell));
             return Descend::No;
@@ -157,8 +158,9 @@ impl Collector<'_> {
             && (s.from_depth..=s.depth).contains(&cell.depth)
         {
             self.total += 1;
-            if px >= LEAST_PX {
-                let (bounds, value) = (plane_in(cell.shape.bounds(), axis, pos), value(s.color, cell, row));
+            let plane = plane_in(cell.shape.bounds(), axis, pos);
+            if px >= LEAST_PX && !self.is_cut_away(&bounds_in_scene(accel, &Cell { shape: Shape::Box(plane), ..*cell })) {
+                let (bounds, value) = (plane, value(s.color, cell, row));
                 self.keep(Found { bounds, value, plane: true, ..Found::new(cell, px) });
             }
         }
@@ -180,6 +182,10 @@ impl Collector<'_> {
 
     fn limit(&self) -> usize {
         self.wanted.limit.max(1)
+    }
+
+    fn is_cut_away(&self, bounds: &Aabb) -> bool {
+        self.wanted.view.section.is_some_and(|section| section.misses(bounds))
     }
 
     /// Leaves as many as are drawn.
@@ -231,6 +237,7 @@ impl Collector<'_> {
             let instance = placed(accel, f.instance, &f.bounds, color.to_array());
             if f.plane { overlay.planes.push(instance) } else { overlay.boxes.push(instance) }
         }
+        overlay.planes.extend(self.wanted.view.section.map(|section| section_in(&section, accel.geometry().space().bounds())));
         let range = (!by_depth && low <= high).then_some([low, high]);
         Collected { overlay, shown: self.found.len(), total: self.total, more: self.more, range }
     }
@@ -245,6 +252,11 @@ fn value(color: BoxColor, cell: &Cell, row: Option<Row>) -> f32 {
         BoxColor::Cost => of_row(|row| row.share),
         BoxColor::Overlap => of_row(|row| row.overlap.unwrap_or(f64::NAN)),
     }
+}
+
+/// The plane of a section where it goes through the scene, as a flat box.
+fn section_in(section: &HalfSpace, bounds: &Aabb) -> BoxInstance {
+    BoxInstance::new(&plane_in(bounds, section.axis, section.at), theme::SECTION.to_array())
 }
 
 /// A box in the space of a level (see [`crate::accel::CellId`]), where it is in the scene.

@@ -32,6 +32,8 @@ pub struct Screenshot {
     try_plane: Option<(Axis, f64)>,
     /// What is still to be done in the Ray workspace.
     follow: Vec<Command>,
+    /// The view is still to be compared with brute force.
+    brute: bool,
     rehearsal: Option<Rehearsal>,
     endurance: Option<Endurance>,
     /// What the long run found, in words.
@@ -76,6 +78,7 @@ impl Screenshot {
             select: options.select,
             try_plane: options.try_plane,
             follow: follow(options),
+            brute: options.brute,
             rehearsal: options.pace.then(Rehearsal::default),
             endurance: options.endure.then(Endurance::default),
             endured: String::new(),
@@ -118,6 +121,7 @@ impl Screenshot {
                     self.stage = Stage::Settling;
                 }
             }
+            Stage::Settling if settled && std::mem::take(&mut self.brute) => commands.push(Command::CheckByBrute(None)),
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
                 self.stage = Stage::Measuring;

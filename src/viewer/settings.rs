@@ -7,6 +7,7 @@ use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
 use crate::render::sampler::SamplerKind;
 use crate::render::{Mode, Tone};
+use crate::scene::Section;
 
 /// Everything that is saved.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -30,6 +31,8 @@ pub struct Settings {
     pub sampler: SamplerKind,
     /// Boxes and planes.
     pub overlay: OverlaySettings,
+    /// Where the model is cut open: as long as it is the same model.
+    pub section: SectionSettings,
     /// What stands around the view.
     pub workspace: Workspace,
     /// How nodes are divided is hidden until asked.
@@ -61,6 +64,7 @@ impl Default for Settings {
             tone: Tone::default(),
             sampler: SamplerKind::default(),
             overlay: OverlaySettings::default(),
+            section: SectionSettings::default(),
             workspace: Workspace::default(),
             hide_outcome: false,
             theme: ThemeChoice::default(),
@@ -97,6 +101,16 @@ pub struct OverlaySettings {
     pub subtree_only: bool,
     /// What colours of boxes stand for.
     pub color: BoxColor,
+}
+
+/// Whether and where the model is cut open for the camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct SectionSettings {
+    /// A part is cut away.
+    pub on: bool,
+    /// Where, and which.
+    pub at: Section,
 }
 
 /// What colours of boxes stand for.

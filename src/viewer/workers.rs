@@ -107,7 +107,7 @@ pub fn build(shared: &Shared, key: Key, geometry: Arc<Geometry>) -> std::io::Res
 }
 
 /// Builds here and now.
-fn build_now(key: Key, geometry: &Arc<Geometry>, cx: &BuildCx) -> Result<Built, BuildError> {
+pub fn build_now(key: Key, geometry: &Arc<Geometry>, cx: &BuildCx) -> Result<Built, BuildError> {
     let start = std::time::Instant::now();
     let accel: Arc<dyn Accel> = Arc::from(key.entry.build(geometry, key.test, &key.params, cx)?);
     let build_secs = start.elapsed().as_secs_f64();

@@ -27,5 +27,6 @@ mod parameters;
 mod pixels;
 mod presenting;
 mod saving;
+mod section;
 mod settings;
 mod structures;

@@ -58,7 +58,11 @@ pub struct Raster {
 }
 
 /// Draws meshes.
-pub(super) struct RasterPipeline(wgpu::RenderPipeline);
+pub(super) struct RasterPipeline {
+    whole: wgpu::RenderPipeline,
+    /// Where a part of the scene is cut away: that takes the graphics the chance to leave out what is hidden early.
+    cut: wgpu::RenderPipeline,
+}
 
 impl RasterPipeline {
     pub(super) fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
@@ -72,20 +76,25 @@ impl RasterPipeline {
             step_mode: wgpu::VertexStepMode::Instance,
             attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4],
         };
-        let recipe = Recipe {
-            label: "raster",
-            source: concat!(include_str!("view.wgsl"), include_str!("raster.wgsl")),
-            groups: &[&layouts.uniform],
-            vertices: &[Some(vertices), Some(places)],
-            pass: Pass::Solid,
-            ..Recipe::default()
+        let vertices = [Some(vertices), Some(places)];
+        let pipeline = |constants: &[(&str, f64)]| {
+            let recipe = Recipe {
+                label: "raster",
+                source: concat!(include_str!("view.wgsl"), include_str!("raster.wgsl")),
+                groups: &[&layouts.uniform],
+                vertices: &vertices,
+                constants,
+                pass: Pass::Solid,
+                ..Recipe::default()
+            };
+            recipe.make(device)
         };
-        Self(recipe.make(device))
+        Self { whole: pipeline(&[("CUT", 0.0)]), cut: pipeline(&[("CUT", 1.0)]) }
     }
 
-    /// Draws what is there of the mesh; the view is group 0.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, buffers: &MeshBuffers, max_triangles: usize) {
-        pass.set_pipeline(&self.0);
+    /// Draws what is there of the mesh; the view is group 0, and says whether a part is cut away.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, buffers: &MeshBuffers, max_triangles: usize, cut: bool) {
+        pass.set_pipeline(if cut { &self.cut } else { &self.whole });
         let total = buffers.mesh.drawn;
         for chunk in &buffers.chunks {
             pass.set_vertex_buffer(0, chunk.positions.slice(..));

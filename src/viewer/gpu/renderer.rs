@@ -140,7 +140,9 @@ impl Renderer {
         pass.set_bind_group(0, &pane.view.group, &[]);
         match (&list.base, &pane.picture, &self.mesh) {
             (Base::Picture(_), Some(picture), _) => self.picture.draw(&mut pass, picture),
-            (Base::Raster(raster), _, Some(mesh)) => self.raster.draw(&mut pass, mesh, raster.max_triangles),
+            (Base::Raster(raster), _, Some(mesh)) => {
+                self.raster.draw(&mut pass, mesh, raster.max_triangles, list.view.section.is_some());
+            }
             _ => {}
         }
     }

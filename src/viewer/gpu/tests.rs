@@ -28,6 +28,7 @@ fn view(orthographic: bool) -> View {
         half_size: Vec2::splat(half),
         orthographic,
         range: [0.5, 4.0],
+        section: None,
     }
 }
 

@@ -25,6 +25,7 @@ pub(super) struct ViewUniform {
     hidden: f32,
     boxes: f32,
     padding: [f32; 3],
+    section: [f32; 4],
 }
 
 impl ViewUniform {
@@ -52,6 +53,10 @@ impl ViewUniform {
             hidden: flag(list.hidden_lines),
             boxes: list.overlay.as_ref().map_or(1, |o| (o.boxes.len() + o.planes.len()).max(1)) as f32,
             padding: [0.0; 3],
+            section: view.section.map_or([0.0; 4], |section| {
+                let (normal, offset) = section.plane();
+                normal.extend(offset).to_array()
+            }),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::geometry::{Aabb, Space, num::narrow};
+use crate::geometry::{Aabb, HalfSpace, Space, num::narrow};
 use crate::scene::{Camera, Projection};
 
 /// A camera in the scaled space, with the range of depths that the scene takes up.
@@ -27,6 +27,8 @@ pub struct View {
     /// The least and the greatest linear depth that is drawn: positive and apart. A perspective has
     /// no far end.
     pub range: [f32; 2],
+    /// What of the scaled space is seen, if not all of it.
+    pub section: Option<HalfSpace>,
 }
 
 impl View {
@@ -46,7 +48,13 @@ impl View {
             half_size: if orthographic { half_size.to_array().map(to_scaled).into() } else { half_size },
             orthographic,
             range: depth_range(eye, frame.forward, space.bounds(), orthographic, target_distance),
+            section: None,
         }
+    }
+
+    /// The same where only a part of the scaled space is seen.
+    pub fn within(self, section: Option<HalfSpace>) -> Self {
+        Self { section, ..self }
     }
 
     /// To the right, to the top, and into the picture from the eye.

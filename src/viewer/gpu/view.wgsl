@@ -24,6 +24,8 @@ struct View {
     hidden: f32,
     // How many boxes and planes there are, at least 1.
     boxes: f32,
+    // Of the scene only points where the dot product with (p, 1) is not negative are seen; zeros where all is.
+    section: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

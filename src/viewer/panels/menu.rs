@@ -80,6 +80,8 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.needing.is_some(), Command::CancelNeeds),
         (state.causes.running.is_some(), Command::CancelCauses),
         (state.rays.following.is_some(), Command::CancelFollow),
+        (state.brute.marking, Command::MarkRectangle(false)),
+        (state.brute.running.is_some(), Command::CancelBrute),
         (state.beside.building.is_some(), Command::PutBeside(None)),
         (state.checks.checking.is_some(), Command::CancelCheck),
         (state.errors.making.is_some(), Command::CancelReference),

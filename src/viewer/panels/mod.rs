@@ -3,6 +3,7 @@
 
 pub mod axes;
 pub mod bars;
+pub mod brute;
 pub mod captions;
 pub mod check;
 pub mod decision;
@@ -11,6 +12,7 @@ pub mod errors;
 pub mod findings;
 pub mod help;
 pub mod long_list;
+pub mod marking;
 pub mod menu;
 pub mod needs;
 pub mod node;
@@ -20,6 +22,7 @@ pub mod path;
 pub mod prediction;
 pub mod ray;
 pub mod scene;
+pub mod section;
 pub mod selection;
 pub mod split;
 pub mod stability;

@@ -52,6 +52,9 @@ fn doing(state: &State) -> Option<String> {
     if let Some(job) = &state.rays.following {
         return Some(format!("Following the ray{}", share(job.progress.snapshot().fraction)));
     }
+    if let Some((job, _)) = &state.brute.running {
+        return Some(format!("Comparing with brute force{}", share(job.progress.snapshot().fraction)));
+    }
     if state.tree.outlining.is_some() {
         return Some("Listing the cells".to_owned());
     }

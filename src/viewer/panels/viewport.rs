@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::Vec2;
 
-use super::{Commands, captions, split};
+use super::{Commands, captions, marking, split};
 use crate::scene::Camera;
 use crate::viewer::checks::Mark;
 use crate::viewer::command::Command;
@@ -42,13 +42,27 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
     }
     captions::show(ui, rect, state);
     split::show(ui, rect, state, commands);
-    if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
-        commands.push(Command::Pick(in_picture(rect, at)));
+    if matches!(state.settings.workspace, Workspace::View | Workspace::Ray) {
+        marking::show(ui, rect, state);
+    }
+    if state.brute.marking {
+        marking::hands(ui, &response, rect, size_px, commands);
+    } else {
+        marking::forget(ui, &response);
+        commands.extend(clicked(&response, rect, state, pixels_per_point));
     }
     if let Some(camera) = hands(ui, &response, rect, state) {
         commands.push(Command::Camera(camera));
     }
     size_px
+}
+
+/// What a click asks for: what is there, or why it differs where that is marked.
+fn clicked(response: &Response, rect: Rect, state: &State, pixels_per_point: f32) -> Option<Command> {
+    let at = in_picture(rect, response.interact_pointer_pos().filter(|_| response.clicked())?);
+    let marked = state.brute.near(at, theme::MARK * pixels_per_point);
+    let marked = marked.filter(|_| state.can_compare_with_brute_force());
+    Some(marked.map_or(Command::Pick(at), Command::FollowUnlike))
 }
 
 fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point: f32) {
@@ -57,7 +71,6 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
     let Some(model) = &state.model else { return };
     // A picture and the boxes over it are of one view, also while the next picture is on its way.
     let camera = state.picture.as_ref().map_or(state.camera, |p| p.camera);
-    let aspect = size_px[0] as f32 / size_px[1] as f32;
     let base = match state.on_screen() {
         Some(picture) => Base::Picture(Arc::clone(picture)),
         None => Base::Raster(Raster {
@@ -67,7 +80,8 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
         }),
     };
     let overlay = state.shown.as_ref().and(state.overlay.clone());
-    let view = View::new(&camera, model.geometry.space(), aspect);
+    let section = state.section().map(|section| section.scaled(model.geometry.space()));
+    let view = View::new(&camera, model.geometry.space(), size_px[0] as f32 / size_px[1] as f32).within(section);
     // For an audience lines are twice as wide, and everything is enlarged already.
     let lines = if state.presenting { theme::PRESENTED_LINES / theme::PRESENTED } else { 1.0 };
     let list = DrawList {
@@ -104,7 +118,9 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
 fn hands(ui: &Ui, response: &Response, rect: Rect, state: &State) -> Option<Camera> {
     state.model.as_ref()?;
     let height = rect.height();
-    dragged(ui, response, state, height).or_else(|| wheel(ui, response, rect, state)).or_else(|| typed(ui, response, state, rect))
+    // While a rectangle is marked drags are not the camera's.
+    let orbited = if state.brute.marking { None } else { dragged(ui, response, state, height) };
+    orbited.or_else(|| wheel(ui, response, rect, state)).or_else(|| typed(ui, response, state, rect))
 }
 
 /// A drag is worked out from where it began, so that a slow frame loses none of it.

@@ -46,6 +46,7 @@ impl State {
     /// Ends what would disturb a measurement, and keeps both renderers from running.
     pub(super) fn begin_measuring(&mut self) -> Pauses {
         (self.beside.building, self.rays.following) = (None, None);
+        self.brute.clear();
         if self.tree.outlining.take().is_some() {
             self.tree.of = None; // listed anew afterwards
         }
@@ -78,8 +79,8 @@ impl State {
         let Some(renderer) = &self.beside.renderer else { return };
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&built.accel));
         let sampling = Sampling { kind: wanted.sampler, seed: 0 };
-        let job =
-            render::Job { sampling, ..render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks)) };
+        let whole = render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks));
+        let job = render::Job { sampling, section: wanted.section, ..whole };
         let ([width, height], max_samples, tone) = (wanted.size_px, wanted.max_samples, wanted.tone);
         renderer.request(Request { job, width, height, max_samples, range, tone, keep: None });
         self.requested_beside = Some(wanted);

@@ -9,11 +9,13 @@ use crate::job::Outcome;
 use crate::render::Mode;
 use crate::scene::texture::Detail;
 use crate::scene::{CameraSpec, Material};
+use crate::viewer::brute::Brute;
 use crate::viewer::history::{Choices, History, Kind};
 use crate::viewer::kept::Built;
 use crate::viewer::model::{self, Model};
 use crate::viewer::pick::Picked;
 use crate::viewer::rays::Rays;
+use crate::viewer::settings::SectionSettings;
 use crate::viewer::timings::Timings;
 use crate::viewer::workers;
 
@@ -63,8 +65,10 @@ impl State {
         (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
         self.checks.opened();
         let ray = self.rays.asked.filter(|_| reopened.is_some());
+        let section = self.first_section.take();
         if reopened.is_none() {
             self.bookmarks.clear();
+            self.settings.section = SectionSettings { on: section.is_some(), at: section.unwrap_or_default() };
         }
         self.shared.give_back(self.tree.outline.take());
         self.tree.clear();
@@ -72,6 +76,7 @@ impl State {
         let (beside, kind, speed) = (std::mem::take(&mut self.rays.beside), self.rays.kind, self.rays.speed);
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
         self.shared.give_back(before.columns);
+        self.brute = Brute::default();
         self.awaited = None;
         self.forget_beside();
         self.bring_back();

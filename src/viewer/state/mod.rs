@@ -3,6 +3,7 @@
 
 mod besides;
 mod bookmarks;
+mod brute_force;
 mod causes;
 mod checking;
 mod dialog;
@@ -13,6 +14,7 @@ mod following;
 mod keeping;
 mod refresh;
 mod saving;
+mod sectioning;
 mod trading;
 
 pub use bookmarks::Bookmark;
@@ -25,6 +27,7 @@ use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 use super::beside::{Beside, Pauses};
+use super::brute::Brute;
 use super::checks::Checks;
 use super::command::Command;
 use super::dialogs::FileDialog;
@@ -47,13 +50,14 @@ use super::workers::{
 };
 use super::workspace_file::WorkspaceFile;
 use crate::accel::{CellId, cell};
+use crate::geometry::HalfSpace;
 use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
 use crate::render::sampler::SamplerKind;
 use crate::render::{self, Mode, Picture, Range, Renderer, Tone};
 use crate::scene::texture::Detail;
-use crate::scene::{Camera, CameraSpec};
+use crate::scene::{Camera, CameraSpec, Section};
 use crate::task::Pool;
 use glam::Vec2;
 
@@ -75,6 +79,8 @@ pub struct State {
     framed: Option<(Camera, [u32; 2])>,
     /// Where the first model is to be seen from, instead of where it suits.
     pub first_camera: Option<CameraSpec>,
+    /// Where the first model is cut open.
+    pub first_section: Option<Section>,
     /// For amounts: fixed by the user, or from the picture.
     pub range: Option<Range>,
     /// The newest picture of the open model.
@@ -103,6 +109,8 @@ pub struct State {
     trace_pool: Pool,
     /// The ray of the Ray workspace.
     pub rays: Rays,
+    /// The picture compared with brute force.
+    pub brute: Brute,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -195,6 +203,8 @@ struct Asked {
     key: Key,
     model: u64,
     camera: Camera,
+    /// What of the world is left.
+    section: Option<HalfSpace>,
     mode: Mode,
     range: Option<Range>,
     size_px: [u32; 2],
@@ -238,6 +248,7 @@ impl State {
             camera: Camera::framing(&crate::geometry::Aabb::EMPTY, glam::Vec3::Z, glam::Vec3::Y, 1.0),
             framed: None,
             first_camera: None,
+            first_section: None,
             range: None,
             picture: None,
             overlay: None,
@@ -252,6 +263,7 @@ impl State {
             requested_beside: None,
             trace_pool: pool.clone(),
             rays: Rays::default(),
+            brute: Brute::default(),
             picked: None,
             error: None,
             answer: None,
@@ -345,6 +357,7 @@ impl State {
             || self.predicting.is_some()
             || self.is_exploring()
             || self.rays.following.is_some()
+            || self.brute.running.is_some()
             || self.saving.is_busy()
             || self.awaited.is_some()
             || drawing
@@ -387,6 +400,7 @@ impl State {
                 }
                 self.settings.overlay = overlay;
             }
+            Command::Section(section) => self.cut(section),
             Command::Camera(camera) => self.look(camera, Kind::Hand),
             Command::CameraBack => self.camera = self.cameras.back(self.camera).unwrap_or(self.camera),
             Command::CameraForward => self.camera = self.cameras.forward(self.camera).unwrap_or(self.camera),
@@ -419,6 +433,10 @@ impl State {
             }
             Command::RayText(text) => self.follow_text(&text),
             Command::CancelFollow => self.rays.following = None,
+            Command::MarkRectangle(mark) => self.mark_rectangle(mark),
+            Command::CheckByBrute(rect) => self.compare_with_brute_force(rect),
+            Command::CancelBrute => self.brute.clear(),
+            Command::FollowUnlike(number) => self.follow_unlike(number),
             Command::Beside(id, beside) => self.follow_beside(id, beside),
             Command::Step(column, step) => self.go_to_step(column, step),
             Command::Play(play) => self.play(play),
@@ -483,7 +501,7 @@ impl State {
     }
 
     fn pick(&mut self, at: Vec2) {
-        let ray = self.camera.ray(&self.camera.frame(), at, self.aspect());
+        let ray = self.ray_at(at);
         (self.tree.selecting, self.tree.restoring) = (None, false);
         if self.settings.workspace == Workspace::Ray {
             self.follow(ray);
@@ -660,6 +678,7 @@ impl State {
         self.advance_causes();
         self.advance_outline();
         self.advance_following();
+        self.advance_brute_force();
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();

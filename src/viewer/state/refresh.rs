@@ -7,7 +7,7 @@ use super::{Answer, Asked, CHANGE_SHOWN, State};
 use crate::job::Outcome;
 use crate::render::sampler::Sampling;
 use crate::render::{self, Picture, Request};
-use crate::viewer::gpu::{Overlay, View};
+use crate::viewer::gpu::Overlay;
 use crate::viewer::overlay::Wanted;
 use crate::viewer::pick::Picked;
 use crate::viewer::settings::BoxColor;
@@ -36,6 +36,7 @@ impl State {
             key: shown.key.clone(),
             model: self.models,
             camera: self.camera,
+            section: self.section(),
             mode,
             range: self.range,
             size_px: self.size_px,
@@ -48,7 +49,8 @@ impl State {
         if self.requested.as_ref() != Some(&asked) && width > 0 && height > 0 {
             let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
             let sampling = Sampling { kind: asked.sampler, seed: 0 };
-            let job = render::Job { sampling, ..render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks)) };
+            let whole = render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks));
+            let job = render::Job { sampling, section: asked.section, ..whole };
             let keep = asked.keeps.then(|| self.shared.budget.clone());
             let request = Request { job, width, height, max_samples, range: self.range, tone: asked.tone, keep };
             let number = self.renderer.request(request);
@@ -112,8 +114,7 @@ impl State {
                 Outcome::Done(Err(_)) | Outcome::Died => self.collected_for = Some((wanted, key)),
             }
         }
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        let view = View::new(&self.camera, model.geometry.space(), self.aspect());
+        let (Some(shown), Some(view)) = (&self.shown, self.view()) else { return };
         let settings = self.settings.overlay;
         let selected = self.picked.as_ref().and_then(Picked::selected).copied();
         let (needs_rows, outline) = (settings.subtree_only || settings.color != BoxColor::Depth, self.tree.outline.clone());

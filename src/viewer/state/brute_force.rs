@@ -1,0 +1,102 @@
+//! Comparing a part of the picture with brute force: started, taken in, and its rays followed.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::State;
+use crate::accel::registry;
+use crate::job::Outcome;
+use crate::lab::{PixelRect, RayKind};
+use crate::render::{self, Mode};
+use crate::viewer::brute::{self, Of};
+use crate::viewer::kept::Key;
+use crate::viewer::settings::Workspace;
+
+/// The structure that looks at everything.
+const BRUTE: &str = "brute";
+
+impl State {
+    /// Whether the shown structure can be compared with brute force now and here: it is another one, and nothing is measured.
+    pub fn can_compare_with_brute_force(&self) -> bool {
+        let other = self.shown.as_ref().is_some_and(|shown| shown.key.entry.id != BRUTE);
+        let here = matches!(self.settings.workspace, Workspace::View | Workspace::Ray);
+        other && here && !self.is_measuring() && !self.is_checking() && !self.size_px.contains(&0)
+    }
+
+    /// Lets the next drag in the view mark a rectangle, or no longer.
+    pub(super) fn mark_rectangle(&mut self, mark: bool) {
+        self.brute.marking = mark && self.can_compare_with_brute_force();
+    }
+
+    /// The present view, as far as it says what is compared.
+    fn compared(&self) -> Option<Of> {
+        let key = self.shown.as_ref()?.key.clone();
+        Some(Of { key, camera: self.camera, section: self.section(), size_px: self.size_px })
+    }
+
+    /// Compares a rectangle of the view, or all of it, with brute force.
+    pub(super) fn compare_with_brute_force(&mut self, rect: Option<PixelRect>) {
+        self.brute.marking = false;
+        if !self.can_compare_with_brute_force() {
+            return;
+        }
+        let (Some(model), Some(shown), Some(entry)) = (&self.model, &self.shown, registry::find(BRUTE)) else { return };
+        let test = entry.tests().find(|test| *test == shown.key.test).unwrap_or_default();
+        let key = Key { entry, params: self.settings.params_of(entry), test };
+        let there = self.kept.take_up(&key).ok_or(key);
+        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
+        let whole = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
+        let view = render::Job { section: self.section(), ..whole };
+        let rect = rect.unwrap_or_else(|| PixelRect::whole(self.size_px));
+        let job = brute::compare(&self.shared, there, view, self.size_px, rect);
+        self.brute.clear();
+        match job {
+            Ok(job) => {
+                self.brute.of = self.compared().map(|of| (of, rect));
+                self.brute.running = Some((job, Instant::now()));
+            }
+            Err(e) => self.fail(format!("Can't compare with brute force: {e}.")),
+        }
+    }
+
+    /// Takes in what was found. What is of another view is forgotten.
+    pub(super) fn advance_brute_force(&mut self) {
+        if self.brute.marking && !self.can_compare_with_brute_force() {
+            self.brute.marking = false;
+        }
+        if self.brute.of.is_some() && self.brute.of.as_ref().map(|of| &of.0) != self.compared().as_ref() {
+            self.brute.clear();
+        }
+        let Some((job, _)) = &self.brute.running else { return };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok((found, built))) => {
+                self.kept.keep(built);
+                if let Some(shown) = &self.shown {
+                    let _ = self.kept.take_up(&shown.key);
+                }
+                self.brute.found = Some(found);
+            }
+            Outcome::Done(Err(why)) if why.is_empty() => self.brute.of = None,
+            Outcome::Done(Err(why)) => {
+                self.brute.of = None;
+                self.fail(format!("Can't compare with brute force: {}", super::finished::sentence(&why)));
+            }
+            Outcome::Died => {
+                self.brute.of = None;
+                self.fail("Can't compare with brute force: it failed. Please report this model.".to_owned());
+            }
+        }
+        self.brute.running = None;
+    }
+
+    /// Follows the ray of a pixel that differs in the Ray workspace, brute force beside it.
+    pub(super) fn follow_unlike(&mut self, number: usize) {
+        let (unlike, _) = self.brute.unlike();
+        let (count, Some(ray)) = (unlike.len(), unlike.get(number).map(|pixel| pixel.ray)) else { return };
+        self.brute.next = (number + 1) % count;
+        (self.rays.asked, self.rays.kind, self.rays.playing) = (Some(ray), RayKind::Primary, None);
+        self.settings.workspace = Workspace::Ray;
+        self.follow_beside(BRUTE, true);
+    }
+}
