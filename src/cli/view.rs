@@ -7,7 +7,7 @@ use super::failure::Failure;
 use super::structures::One;
 use crate::accel::outline::Rank;
 use crate::geometry::Axis;
-use crate::render::Mode;
+use crate::render::{HeatRays, Mode};
 
 /// How the window begins. What is not said comes from the last time.
 #[derive(Debug, clap::Args)]
@@ -22,6 +22,9 @@ pub struct Args {
     /// What is shown: shaded, path, ao, normals, depth, nodes, leaves or prims.
     #[arg(long)]
     pub mode: Option<Mode>,
+    /// Whose work nodes, leaves and prims are: primary, shadow or bounce.
+    #[arg(long, value_name = "KIND")]
+    pub heat_rays: Option<HeatRays>,
     /// Samples a pixel after which to rest.
     #[arg(long, value_name = "N")]
     pub spp: Option<u32>,
@@ -89,6 +92,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         model: args.model,
         structure: args.structure.map(|one| one.0.id.to_owned()),
         mode: args.mode,
+        heat_rays: args.heat_rays,
         camera: args.look.camera,
         depth: args.depth,
         leaves_only: args.leaves_only,

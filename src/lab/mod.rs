@@ -32,6 +32,7 @@ pub mod scaling;
 pub mod stability;
 pub mod statistics;
 mod ties;
+pub mod tile_times;
 mod timing;
 pub mod tradeoffs;
 mod turns;

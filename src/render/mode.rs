@@ -1,5 +1,7 @@
 //! What a picture shows.
 
+use crate::accel::probe::Counts;
+
 /// A way to turn a hit, or the work it took, into a colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -15,11 +17,11 @@ pub enum Mode {
     Ao,
     /// Light, followed from surface to surface.
     Path,
-    /// Nodes visited by the camera ray.
+    /// Nodes visited by a ray.
     Nodes,
-    /// Leaves visited by the camera ray.
+    /// Leaves visited by a ray.
     Leaves,
-    /// Primitives tested by the camera ray.
+    /// Primitives tested by a ray.
     Prims,
 }
 
@@ -64,9 +66,9 @@ impl Mode {
             Self::Depth => "Distance from the camera, near is bright.",
             Self::Path => "Light from the model's lamps, or from a sky where it has none, followed from surface to surface.",
             Self::Ao => "How much of the sky each point sees: one random ray a sample.",
-            Self::Nodes => "How many nodes or cells each camera ray visits in the structure.",
-            Self::Leaves => "How many leaves, which hold triangles, each camera ray visits.",
-            Self::Prims => "How many triangles each camera ray is tested against.",
+            Self::Nodes => "How many nodes or cells each ray visits in the structure.",
+            Self::Leaves => "How many leaves, which hold triangles, each ray visits.",
+            Self::Prims => "How many triangles each ray is tested against.",
         }
     }
 
@@ -81,6 +83,15 @@ impl Mode {
             Self::Path => 8.0,
             Self::Ao => 2.0,
             _ => 1.0,
+        }
+    }
+
+    /// What of a traversal's counts is shown.
+    pub(super) const fn amount(self, counts: &Counts) -> u64 {
+        match self {
+            Self::Nodes => counts.nodes,
+            Self::Leaves => counts.leaves,
+            _ => counts.prims,
         }
     }
 

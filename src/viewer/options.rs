@@ -6,7 +6,7 @@ use super::settings::{Settings, ThemeChoice, Workspace};
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::geometry::Axis;
-use crate::render::Mode;
+use crate::render::{HeatRays, Mode};
 use crate::scene::CameraSpec;
 
 /// How the window begins. What is not set comes from the settings of the last time.
@@ -18,6 +18,8 @@ pub struct ViewerOptions {
     pub structure: Option<String>,
     /// What is shown.
     pub mode: Option<Mode>,
+    /// Whose work heat maps show.
+    pub heat_rays: Option<HeatRays>,
     /// From where it is seen at first.
     pub camera: Option<CameraSpec>,
     /// The depth of the boxes.
@@ -71,6 +73,7 @@ impl ViewerOptions {
             settings.structure.clone_from(structure);
         }
         settings.mode = self.mode.unwrap_or(settings.mode);
+        settings.heat_rays = self.heat_rays.unwrap_or(settings.heat_rays);
         settings.max_samples = self.samples.unwrap_or(settings.max_samples);
         settings.theme = self.theme.unwrap_or(settings.theme);
         if self.check {

@@ -6,7 +6,7 @@ use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
 use crate::render::sampler::SamplerKind;
-use crate::render::{Mode, Tone};
+use crate::render::{HeatRays, Mode, Tone};
 
 /// Everything that is saved.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -22,6 +22,8 @@ pub struct Settings {
     pub test: TestKind,
     /// What is shown.
     pub mode: Mode,
+    /// Whose work heat maps show.
+    pub heat_rays: HeatRays,
     /// Samples after which to rest.
     pub max_samples: u32,
     /// How light becomes colour.
@@ -57,6 +59,7 @@ impl Default for Settings {
             params: BTreeMap::new(),
             test: TestKind::default(),
             mode: Mode::default(),
+            heat_rays: HeatRays::default(),
             max_samples: 4096,
             tone: Tone::default(),
             sampler: SamplerKind::default(),

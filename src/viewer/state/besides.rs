@@ -33,7 +33,7 @@ impl State {
     }
 
     fn beside_entry(&self) -> Option<&'static Entry> {
-        let offered = self.settings.workspace == Workspace::Compare && self.settings.mode != Mode::Path;
+        let offered = self.settings.workspace == Workspace::Compare && self.settings.mode != Mode::Path && !self.tiles.shown;
         self.beside.chosen.filter(|_| offered)
     }
 
@@ -78,8 +78,9 @@ impl State {
         let Some(renderer) = &self.beside.renderer else { return };
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&built.accel));
         let sampling = Sampling { kind: wanted.sampler, seed: 0 };
-        let job =
-            render::Job { sampling, ..render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks)) };
+        let heat_rays = wanted.heat_rays;
+        let job = render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks));
+        let job = render::Job { sampling, heat_rays, ..job };
         let ([width, height], max_samples, tone) = (wanted.size_px, wanted.max_samples, wanted.tone);
         renderer.request(Request { job, width, height, max_samples, range, tone, keep: None });
         self.requested_beside = Some(wanted);

@@ -61,6 +61,8 @@ impl State {
         (self.needs, self.needing) = (None, None);
         self.timings = Timings::default();
         (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
+        self.tiles.clear();
+        self.clicked = None;
         self.checks.opened();
         let ray = self.rays.asked.filter(|_| reopened.is_some());
         if reopened.is_none() {

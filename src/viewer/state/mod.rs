@@ -10,9 +10,11 @@ mod erring;
 mod exploring;
 mod finished;
 mod following;
+mod heating;
 mod keeping;
 mod refresh;
 mod saving;
+mod tiling;
 mod trading;
 
 pub use bookmarks::Bookmark;
@@ -39,6 +41,7 @@ use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
 use super::rays::Rays;
 use super::settings::{Settings, Workspace};
+use super::tiles::Tiles;
 use super::timings::Timings;
 use super::tradeoffs::Tradeoffs;
 use super::tree::Tree;
@@ -51,7 +54,7 @@ use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
 use crate::render::sampler::SamplerKind;
-use crate::render::{self, Mode, Picture, Range, Renderer, Tone};
+use crate::render::{self, HeatRays, Mode, Picture, Range, Renderer, Tone};
 use crate::scene::texture::Detail;
 use crate::scene::{Camera, CameraSpec};
 use crate::task::Pool;
@@ -77,6 +80,10 @@ pub struct State {
     pub first_camera: Option<CameraSpec>,
     /// For amounts: fixed by the user, or from the picture.
     pub range: Option<Range>,
+    /// Where the picture was last clicked, and from where it was seen.
+    clicked: Option<(Camera, Vec2)>,
+    /// Nanoseconds by tiles of the picture.
+    pub tiles: Tiles,
     /// The newest picture of the open model.
     pub picture: Option<Arc<Picture>>,
     /// What is drawn over it.
@@ -196,6 +203,8 @@ struct Asked {
     model: u64,
     camera: Camera,
     mode: Mode,
+    /// Whose work is shown, of heat maps.
+    heat_rays: HeatRays,
     range: Option<Range>,
     size_px: [u32; 2],
     max_samples: u32,
@@ -239,6 +248,8 @@ impl State {
             framed: None,
             first_camera: None,
             range: None,
+            clicked: None,
+            tiles: Tiles::default(),
             picture: None,
             overlay: None,
             collected: Collected::default(),
@@ -316,6 +327,7 @@ impl State {
             || self.causes.running.is_some()
             || self.errors.making.is_some()
             || self.tradeoffs.running.is_some()
+            || self.tiles.running.is_some()
     }
 
     /// Whether the lab runs or the model is checked, which would disturb a measurement.
@@ -345,6 +357,7 @@ impl State {
             || self.predicting.is_some()
             || self.is_exploring()
             || self.rays.following.is_some()
+            || self.is_tiling()
             || self.saving.is_busy()
             || self.awaited.is_some()
             || drawing
@@ -375,11 +388,12 @@ impl State {
                 self.settings.test = test;
                 self.choose();
             }
-            Command::Mode(mode) => {
-                self.settings.mode = mode;
-                self.range = None;
-            }
-            Command::HeatRange(range) => self.range = range,
+            Command::Mode(mode) => self.show_mode(mode),
+            Command::HeatRays(rays) => self.show_heat_of(rays),
+            Command::ShowTiles(shown) => self.show_tiles(shown),
+            Command::TimeTiles => self.time_tiles(),
+            Command::CancelTiles => self.tiles.running = None,
+            Command::HeatRange(range) => self.set_heat_range(range),
             Command::Overlay(overlay) => {
                 let depths = (overlay.from_depth, overlay.depth);
                 if depths != (self.settings.overlay.from_depth, self.settings.overlay.depth) {
@@ -485,6 +499,7 @@ impl State {
     fn pick(&mut self, at: Vec2) {
         let ray = self.camera.ray(&self.camera.frame(), at, self.aspect());
         (self.tree.selecting, self.tree.restoring) = (None, false);
+        self.note_click(at);
         if self.settings.workspace == Workspace::Ray {
             self.follow(ray);
         }
@@ -671,6 +686,7 @@ impl State {
         self.advance_beside();
         self.advance_errors();
         self.advance_tradeoffs();
+        self.advance_tiles();
         self.advance_statistics();
         self.advance_prediction();
         self.advance_textures();

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::{Answer, Asked, CHANGE_SHOWN, State};
 use crate::job::Outcome;
 use crate::render::sampler::Sampling;
-use crate::render::{self, Picture, Request};
+use crate::render::{self, HeatRays, Picture, Request};
 use crate::viewer::gpu::{Overlay, View};
 use crate::viewer::overlay::Wanted;
 use crate::viewer::pick::Picked;
@@ -37,6 +37,8 @@ impl State {
             model: self.models,
             camera: self.camera,
             mode,
+            // Of other pictures it changes nothing.
+            heat_rays: if mode.is_heat() { self.settings.heat_rays } else { HeatRays::default() },
             range: self.range,
             size_px: self.size_px,
             max_samples,
@@ -48,7 +50,12 @@ impl State {
         if self.requested.as_ref() != Some(&asked) && width > 0 && height > 0 {
             let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
             let sampling = Sampling { kind: asked.sampler, seed: 0 };
-            let job = render::Job { sampling, ..render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks)) };
+            let heat_rays = asked.heat_rays;
+            let job = render::Job {
+                sampling,
+                heat_rays,
+                ..render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks))
+            };
             let keep = asked.keeps.then(|| self.shared.budget.clone());
             let request = Request { job, width, height, max_samples, range: self.range, tone: asked.tone, keep };
             let number = self.renderer.request(request);
