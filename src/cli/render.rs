@@ -32,10 +32,10 @@ pub struct Args {
     /// The structure to trace through.
     #[arg(long, value_name = "ID", default_value = "bvh")]
     structure: One,
-    /// What is shown: shaded, path, ao, normals, depth, nodes, leaves or prims.
+    /// What is shown: shaded, path, ao, normals, depth, nodes, leaves, prims or stack.
     #[arg(long, default_value = "shaded")]
     mode: Mode,
-    /// Whose work nodes, leaves and prims are: of the camera's rays (primary), or of rays that leave what they meet, to a light
+    /// Whose work nodes, leaves, prims and stack are: of the camera's rays (primary), or of rays that leave what they meet, to a light
     /// beside the camera (shadow) or in a random direction (bounce).
     #[arg(long, value_name = "KIND", default_value = "primary")]
     heat_rays: HeatRays,
@@ -199,6 +199,7 @@ fn text(args: &Args, still: &Still, [open, build]: [(&'static str, String); 2], 
             Mode::Nodes => format!(" nodes visited by {}", args.heat_rays.each()),
             Mode::Leaves => format!(" leaves visited by {}", args.heat_rays.each()),
             Mode::Prims => format!(" triangles tested by {}", args.heat_rays.each()),
+            Mode::Stack => format!(" entries on the stack at once, {}", args.heat_rays.each()),
             _ => String::new(),
         };
         lines.push(("range", format!("{} to {}{unit}", number(range.min.into()), number(range.max.into()))));

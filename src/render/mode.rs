@@ -23,12 +23,14 @@ pub enum Mode {
     Leaves,
     /// Primitives tested by a ray.
     Prims,
+    /// Entries that wait on the stack at once while a ray is traced.
+    Stack,
 }
 
 impl Mode {
     /// All of them, in the order of menus.
-    pub const ALL: [Self; 8] =
-        [Self::Shaded, Self::Path, Self::Ao, Self::Normals, Self::Depth, Self::Nodes, Self::Leaves, Self::Prims];
+    pub const ALL: [Self; 9] =
+        [Self::Shaded, Self::Path, Self::Ao, Self::Normals, Self::Depth, Self::Nodes, Self::Leaves, Self::Prims, Self::Stack];
 
     /// The name used on the command line and in files.
     pub const fn id(self) -> &'static str {
@@ -41,6 +43,7 @@ impl Mode {
             Self::Nodes => "nodes",
             Self::Leaves => "leaves",
             Self::Prims => "prims",
+            Self::Stack => "stack",
         }
     }
 
@@ -55,6 +58,7 @@ impl Mode {
             Self::Nodes => "Nodes visited",
             Self::Leaves => "Leaves visited",
             Self::Prims => "Primitives tested",
+            Self::Stack => "Stack depth",
         }
     }
 
@@ -69,12 +73,13 @@ impl Mode {
             Self::Nodes => "How many nodes or cells each ray visits in the structure.",
             Self::Leaves => "How many leaves, which hold triangles, each ray visits.",
             Self::Prims => "How many triangles each ray is tested against.",
+            Self::Stack => "How many nodes wait on the stack at once, at most, while each ray is traced; in an octree, levels.",
         }
     }
 
     /// Whether pixels are amounts that a range turns into colours, rather than colours.
     pub const fn is_scalar(self) -> bool {
-        matches!(self, Self::Depth | Self::Nodes | Self::Leaves | Self::Prims)
+        self.is_heat() || matches!(self, Self::Depth)
     }
 
     /// Rays that a pixel takes for a sample, about: what a pass takes is foreseen by it.
@@ -91,13 +96,14 @@ impl Mode {
         match self {
             Self::Nodes => counts.nodes,
             Self::Leaves => counts.leaves,
+            Self::Stack => counts.stack,
             _ => counts.prims,
         }
     }
 
     /// Whether the traversal is watched.
     pub const fn is_heat(self) -> bool {
-        matches!(self, Self::Nodes | Self::Leaves | Self::Prims)
+        matches!(self, Self::Nodes | Self::Leaves | Self::Prims | Self::Stack)
     }
 }
 

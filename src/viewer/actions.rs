@@ -183,8 +183,8 @@ fn view(list: &mut List, state: &State) {
     list.add("View before", Command::CameraBack).key(CAMERA_BACK).if_possible(state.cameras.has_back());
     list.add("View after", Command::CameraForward).key(CAMERA_FORWARD).if_possible(state.cameras.has_forward());
     for mode in Mode::ALL {
-        list.add(format!("Picture: {}", mode.label()), Command::Mode(mode))
-            .if_possible(mode != state.settings.mode || state.tiles.shown);
+        let other = mode != state.settings.mode || state.tiles.shown;
+        list.add(format!("Picture: {}", mode.label()), Command::Mode(mode)).if_possible(state.offers(mode) && other);
     }
     list.add(format!("Picture: {}", toolbar::TILES), Command::ShowTiles(true)).if_possible(open && !state.tiles.shown);
     let heat = panels::heat::is_shown(state);

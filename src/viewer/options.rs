@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::settings::{Settings, ThemeChoice, Workspace};
+use super::settings::{BoxColor, Settings, ThemeChoice, Workspace};
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::geometry::Axis;
@@ -26,6 +26,8 @@ pub struct ViewerOptions {
     pub depth: Option<u32>,
     /// Only the boxes of leaves.
     pub leaves_only: bool,
+    /// What colours of boxes stand for.
+    pub color_boxes: Option<BoxColor>,
     /// No boxes and planes at all.
     pub no_overlay: bool,
     /// Samples after which to rest.
@@ -36,6 +38,8 @@ pub struct ViewerOptions {
     pub size: Option<[f32; 2]>,
     /// Measure every structure once the picture is there; only with `screenshot`.
     pub measure: bool,
+    /// Time the tiles of the view and show them; only with `screenshot`.
+    pub time_tiles: bool,
     /// Begin in the Check workspace; with `screenshot`, run the lab first.
     pub check: bool,
     /// Begin in the Compare workspace with that plot; with `screenshot`, fill it first.
@@ -96,6 +100,7 @@ impl ViewerOptions {
             (overlay.depth, overlay.from_depth, overlay.boxes) = (depth, depth, true);
         }
         overlay.leaves_only |= self.leaves_only;
+        overlay.color = self.color_boxes.unwrap_or(overlay.color);
         if self.no_overlay {
             (overlay.boxes, overlay.planes) = (false, false);
         }

@@ -34,6 +34,8 @@ pub struct Screenshot {
     try_plane: Option<(Axis, f64)>,
     /// What is still to be done in the Ray workspace.
     follow: Vec<Command>,
+    /// What shows the times of tiles.
+    tiles: Vec<Command>,
     rehearsal: Option<Rehearsal>,
     endurance: Option<Endurance>,
     /// What the long run found, in words.
@@ -79,6 +81,7 @@ impl Screenshot {
             select: options.select,
             try_plane: options.try_plane,
             follow: follow(options),
+            tiles: if options.time_tiles { vec![Command::ShowTiles(true), Command::TimeTiles] } else { Vec::new() },
             rehearsal: options.pace.then(Rehearsal::default),
             endurance: options.endure.then(Endurance::default),
             endured: String::new(),
@@ -121,6 +124,7 @@ impl Screenshot {
                     other => other,
                 });
             }
+            Stage::Settling if settled && !self.tiles.is_empty() => commands.push(self.tiles.remove(0)),
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
                 self.stage = Stage::Measuring;

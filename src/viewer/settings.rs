@@ -114,11 +114,24 @@ pub enum BoxColor {
     Cost,
     /// How often a line that meets the node meets the overlap of its children.
     Overlap,
+    /// How often a camera ray of the present view enters the cell.
+    Visits,
 }
 
 impl BoxColor {
     /// All, in the order of menus.
-    pub const ALL: [Self; 4] = [Self::Depth, Self::Triangles, Self::Cost, Self::Overlap];
+    pub const ALL: [Self; 5] = [Self::Depth, Self::Triangles, Self::Cost, Self::Overlap, Self::Visits];
+
+    /// The one of a name on the command line.
+    pub fn of_id(id: &str) -> Option<Self> {
+        let ids = ["depth", "triangles", "share", "overlap", "visits"];
+        ids.into_iter().zip(Self::ALL).find(|(known, _)| *known == id).map(|(_, color)| color)
+    }
+
+    /// Whether it is told by the list of cells alone.
+    pub const fn needs_rows(self) -> bool {
+        matches!(self, Self::Triangles | Self::Cost | Self::Overlap)
+    }
 
     /// The name in menus.
     pub const fn label(self) -> &'static str {
@@ -127,6 +140,7 @@ impl BoxColor {
             Self::Triangles => "By triangles",
             Self::Cost => "By SAH share",
             Self::Overlap => "By overlap",
+            Self::Visits => "By visits",
         }
     }
 
@@ -137,6 +151,7 @@ impl BoxColor {
             Self::Triangles => "Triangles",
             Self::Cost => "SAH share",
             Self::Overlap => "Overlap",
+            Self::Visits => "Visits a ray",
         }
     }
 }

@@ -64,7 +64,10 @@ fn showing(state: &State) -> String {
     }
     let beyond = if c.more { " or more" } else { "" };
     let color = state.settings.overlay.color;
-    let write = |x: f32| if color == BoxColor::Triangles { format::number(x.into()) } else { format::share(x.into()) };
+    let write = |x: f32| match color {
+        BoxColor::Triangles | BoxColor::Visits => format::number(x.into()),
+        BoxColor::Depth | BoxColor::Cost | BoxColor::Overlap => format::share(x.into()),
+    };
     let colors = c.range.map(|range| {
         let [low, high] = range.map(write);
         format!(", {}: {low} dark to {high} bright", color.name())

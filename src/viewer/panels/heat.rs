@@ -5,10 +5,10 @@ use eframe::egui::{Id, WidgetInfo, pos2, vec2};
 
 use super::{Commands, empty, fact, heading};
 use crate::lab::tile_times::{REPEATS, TILE};
-use crate::render::{Amounts, Histogram, Picture, Range};
+use crate::render::{Amounts, Histogram, Mode, Picture, Range};
 use crate::viewer::command::Command;
 use crate::viewer::format;
-use crate::viewer::state::State;
+use crate::viewer::state::{LEAST_SPAN, State};
 use crate::viewer::theme::{self, Palette};
 use crate::viewer::tiles::TERMS;
 
@@ -28,6 +28,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     heading(ui, "Heat map");
     if state.tiles.shown {
         tiles(ui, state, commands);
+    }
+    if let Some(why) = state.why_no_stack().filter(|_| state.settings.mode == Mode::Stack && !state.tiles.shown) {
+        empty(ui, why);
     }
     // Until tiles are timed the picture is another one.
     let other = state.tiles.shown && !state.shows_tiles();
@@ -111,8 +114,8 @@ fn ends(ui: &mut Ui, state: &State, picture: &Picture, histogram: &Histogram, co
     let high = handle(ui, id.with("high"), "Bright end of the colours", scale, range.max, histogram.width);
     if low.is_some() || high.is_some() {
         // An end that is moved stops at the other one.
-        let min = low.map_or(range.min, |low| low.min(range.max));
-        let max = high.map_or(range.max, |high| high.max(range.min));
+        let min = low.map_or(range.min, |low| low.min(range.max - LEAST_SPAN));
+        let max = high.map_or(range.max, |high| high.max(range.min + LEAST_SPAN));
         commands.push(Command::HeatRange(Some(Range { min, max })));
     }
 }
@@ -140,6 +143,7 @@ fn handle(ui: &Ui, id: Id, name: &str, scale: Scale, amount: f32, step: f32) -> 
     let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(theme::ROW, rect.height() + 2.0 * theme::HANDLE));
     let response = ui.interact(grip, id, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::slider(true, f64::from(amount), name));
+    let response = response.on_hover_text(format!("{name}: drag it, or use the arrow keys."));
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
     let strong = response.hovered() || response.dragged() || response.has_focus();
     let color = if strong { palette.accent_text } else { palette.text };
@@ -170,7 +174,7 @@ fn handle(ui: &Ui, id: Id, name: &str, scale: Scale, amount: f32, step: f32) -> 
 fn typed(ui: &mut Ui, state: &State, fitting: Range, amounts: &Amounts, commands: &mut Commands) {
     let before = state.range.unwrap_or(fitting);
     let Range { mut min, mut max } = before;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let speed = f64::from(0.25 * amounts.histogram.width);
         let mut field = |value: &mut f32, prefix: &str, name: &str, help: &str| {
             let field = DragValue::new(value).range(0.0..=f32::MAX).speed(speed).max_decimals(1).prefix(prefix);

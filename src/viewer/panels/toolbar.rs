@@ -1,6 +1,6 @@
 //! The row above the viewport: structure, what is shown, depth.
 
-use eframe::egui::{Button, ComboBox, DragValue, Slider, Ui};
+use eframe::egui::{Button, ComboBox, DragValue, RichText, Slider, Ui};
 
 use super::{Commands, heat};
 use crate::accel::cell::Layout;
@@ -11,7 +11,7 @@ use crate::render::{Curve, HeatRays, Mode};
 use crate::viewer::command::Command;
 use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
-use crate::viewer::theme;
+use crate::viewer::theme::{self, Palette};
 
 /// Draws the row.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -56,7 +56,7 @@ fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let (chosen, tiles) = (state.settings.mode, state.tiles.shown);
     let (text, help) = if tiles { (TILES, TILES_HELP) } else { (chosen.label(), chosen.help()) };
     let combo = ComboBox::from_id_salt("mode").height(theme::LONG_MENU).selected_text(text).show_ui(ui, |ui| {
-        for mode in Mode::ALL {
+        for mode in Mode::ALL.into_iter().filter(|mode| state.offers(*mode)) {
             let this = mode == chosen && !tiles;
             if ui.selectable_label(this, mode.label()).on_hover_text(mode.help()).clicked() {
                 commands.push(Command::Mode(mode));
@@ -64,6 +64,9 @@ fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
         if ui.selectable_label(tiles, TILES).on_hover_text(TILES_HELP).clicked() {
             commands.push(Command::ShowTiles(true));
+        }
+        if let Some(why) = state.why_no_stack() {
+            ui.label(RichText::new(why).small().color(Palette::in_ui(ui).dim));
         }
     });
     combo.response.accessible_name("Picture").on_hover_text(help);

@@ -63,6 +63,7 @@ impl State {
         (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
         self.tiles.clear();
         self.clicked = None;
+        self.shared.give_back(std::mem::take(&mut self.visiting));
         self.checks.opened();
         let ray = self.rays.asked.filter(|_| reopened.is_some());
         if reopened.is_none() {

@@ -16,10 +16,13 @@ mod refresh;
 mod saving;
 mod tiling;
 mod trading;
+mod visiting;
 
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
+pub use heating::LEAST_SPAN;
 use saving::Saving;
+use visiting::Visiting;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -176,6 +179,8 @@ pub struct State {
     textures: Option<Detail>,
     collecting: Option<(Wanted, Key, Collecting)>,
     collected_for: Option<(Wanted, Key)>,
+    /// How often rays enter cells, for their colours.
+    visiting: Visiting,
     /// The boxes are those of the present view, structure and settings.
     overlay_is_current: bool,
     dialog: Box<dyn FileDialog>,
@@ -298,6 +303,7 @@ impl State {
             textures: None,
             collecting: None,
             collected_for: None,
+            visiting: Visiting::default(),
             overlay_is_current: false,
             dialog,
             asked_for_file: None,
@@ -358,6 +364,7 @@ impl State {
             || self.is_exploring()
             || self.rays.following.is_some()
             || self.is_tiling()
+            || self.awaits_visits()
             || self.saving.is_busy()
             || self.awaited.is_some()
             || drawing
@@ -617,6 +624,7 @@ impl State {
         self.tree.clear();
         self.causes = Causes::default();
         self.rays.clear();
+        self.shared.give_back(std::mem::take(&mut self.visiting));
         self.shown = Some(built);
         if self.settings.workspace == Workspace::Ray {
             self.follow_again();
@@ -690,6 +698,7 @@ impl State {
         self.advance_statistics();
         self.advance_prediction();
         self.advance_textures();
+        self.advance_visits();
         self.refresh_overlay();
     }
 

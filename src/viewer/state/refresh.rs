@@ -123,7 +123,8 @@ impl State {
         let view = View::new(&self.camera, model.geometry.space(), self.aspect());
         let settings = self.settings.overlay;
         let selected = self.picked.as_ref().and_then(Picked::selected).copied();
-        let (needs_rows, outline) = (settings.subtree_only || settings.color != BoxColor::Depth, self.tree.outline.clone());
+        let (needs_rows, outline) = (settings.subtree_only || settings.color.needs_rows(), self.tree.outline.clone());
+        let visits = self.visiting.newest().filter(|_| settings.color == BoxColor::Visits);
         let wanted = Wanted {
             settings,
             view,
@@ -132,6 +133,7 @@ impl State {
             // A row whose cell is on its way is not that of the selected cell.
             top: selected.zip(self.tree.selected).filter(|_| settings.subtree_only && self.tree.selecting.is_none()),
             numbered: needs_rows && outline.is_some(),
+            counted: visits.as_ref().map(|(number, _)| *number),
         };
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
         self.overlay_is_current = current;
@@ -139,7 +141,9 @@ impl State {
         if current || !seen || self.collecting.is_some() || self.is_measuring() {
             return;
         }
-        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), outline, wanted.clone()) {
+        if let Ok(job) =
+            workers::collect(&self.shared, Arc::clone(&shown.accel), (outline, visits.map(|(_, visits)| visits)), wanted.clone())
+        {
             self.collecting = Some((wanted, shown.key.clone(), job));
         }
     }

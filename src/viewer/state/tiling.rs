@@ -56,7 +56,10 @@ impl State {
             match job.poll() {
                 Outcome::Running => self.tiles.drawing = Some((range, job)),
                 Outcome::Done(picture) => self.tiles.picture = Some((range, Arc::new(picture))),
-                Outcome::Died => self.fail("Can't draw the tiles: it failed. Please report this.".to_owned()),
+                Outcome::Died => {
+                    self.tiles.clear();
+                    self.fail("Can't draw the tiles: it failed. Please report this.".to_owned());
+                }
             }
         }
         if !self.tiles_await_drawing() {
