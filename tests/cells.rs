@@ -10,6 +10,7 @@ use boxwood::accel::stats::{SahWeights, Stats};
 use boxwood::accel::{Accel, BuildCx, Mode, cell, registry};
 use boxwood::geometry::Ray;
 use boxwood::geometry::tri::TestKind;
+use boxwood::lab::follow::follow;
 use boxwood::scene::{Geometry, LoadCx, Scene, builtin};
 use boxwood::task::Cancel;
 use common::{geometry_of, scene_of, soup, watch};
@@ -139,4 +140,36 @@ fn a_two_level_grid_of_copies_keeps_to_its_references() {
     let geometry = geometry_of(&scene_of(&vec![tri; copies]));
     let references = stats(built("grid2", &[], &geometry).as_ref()).references;
     assert!(references < 300 * copies as u64, "{references} references");
+}
+
+#[test]
+fn stacks_are_as_deep_as_trees_at_most_and_grids_have_none() {
+    let scene = scene_of(&soup(3000, 0.1, 5));
+    let geometry = geometry_of(&scene);
+    let rays = primary(&scene, &geometry, 24);
+    for entry in registry::ALL {
+        let accel = built(entry.id, &[], &geometry);
+        let deepest = u64::from(stats(accel.as_ref()).max_depth);
+        let most = counts(accel.as_ref(), &rays).stack;
+        match entry.id {
+            "brute" | "grid" | "grid2" => assert_eq!(most, 0, "{}", entry.id),
+            // Of eight children seven wait.
+            "wide" => assert!(most > 0 && most <= 7 * deepest, "{most}"),
+            id => assert!(most > 0 && most <= deepest, "{id}: {most} at depth {deepest}"),
+        }
+    }
+}
+
+#[test]
+fn the_stack_holds_what_waits_at_a_step() {
+    let scene = scene_of(&soup(800, 0.2, 9));
+    let geometry = geometry_of(&scene);
+    let accel = built("bvh", &[], &geometry);
+    for ray in primary(&scene, &geometry, 12) {
+        let followed = follow(accel.as_ref(), &ray, Mode::Closest, &Cancel::new()).expect("not cancelled");
+        // At the step into a node both of its children wait; the nearer one is never put on the stack.
+        let most = followed.steps.iter().map(|step| u64::from(step.waiting)).max().unwrap_or(0);
+        let stack = followed.counts.stack;
+        assert!(stack <= most && most <= stack + 1, "{stack} on the stack, {most} wait: {ray:?}");
+    }
 }

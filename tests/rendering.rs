@@ -5,13 +5,15 @@ mod common;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use boxwood::accel::probe::Counts;
 use boxwood::accel::{self, Accel, registry};
 use boxwood::geometry::tri::TestKind;
-use boxwood::render::{Development, Film, Job, Mode, Range, Renderer, Request, Tone, Until, render};
+use boxwood::lab::{RayKind, RaySet};
+use boxwood::render::{Development, Film, HeatRays, Job, Mode, Picture, Range, Renderer, Request, Tone, Until, render};
 use boxwood::scene::{Camera, Projection};
 use boxwood::task::{Budget, Cancel, Pool, Progress};
 use common::{ball, build, geometry_of, scene_of, soup};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 fn job(triangles: &[[Vec3; 3]], id: &str, mode: Mode) -> Job {
     let scene = scene_of(triangles);
@@ -87,6 +89,71 @@ fn heat_maps_tell_structures_apart() {
     let total = |id: &str, mode| film(&job(&triangles, id, mode), 1).means().map(|m| f64::from(m[0])).sum::<f64>();
     assert!(total("brute", Mode::Prims) > 4.0 * total("bvh", Mode::Prims));
     assert!(total("bvh", Mode::Nodes) > total("brute", Mode::Nodes));
+    assert!(total("bvh", Mode::Stack) > 0.0 && total("grid", Mode::Stack) == 0.0);
+}
+
+#[test]
+fn heat_maps_are_of_the_rays_that_are_asked_for() {
+    let (pool, cancel) = (Pool::new("test", 2), Cancel::new());
+    for id in ["bvh", "kdtree", "grid"] {
+        let mut job = job(&soup(400, 0.3, 7), id, Mode::Nodes);
+        let primary = film(&job, 1);
+        for (heat_rays, kind) in [(HeatRays::Shadow, RayKind::Shadow), (HeatRays::Bounce, RayKind::Diffuse)] {
+            job.heat_rays = heat_rays;
+            let until = Until::samples(1);
+            let still = render(&job, (90, 60), &until, &pool, &cancel, &Progress::new()).expect("not cancelled");
+            // One amount for each ray that leaves a hit, in the order of pixels.
+            let shown: Vec<f32> = still.film.means().filter(|m| m[3] > 0.0).map(|m| m[0]).collect();
+            let set = RaySet::generate(kind, &job, 90, 60, &pool, &cancel).expect("not cancelled");
+            let count = |ray| {
+                let mut counts = Counts::default();
+                job.accel.trace_watched(ray, set.mode, &mut counts, &cancel).expect("not cancelled");
+                counts.nodes as f32
+            };
+            assert_eq!(shown, set.rays.iter().map(count).collect::<Vec<_>>(), "{id}, {kind:?}");
+            assert!(!shown.is_empty() && shown.len() < 90 * 60 && still.film != primary);
+            let depths = |film: &Film| film.depth().iter().map(|t| t.is_finite()).collect::<Vec<_>>();
+            assert_eq!(depths(&still.film), depths(&primary), "depths are the camera's");
+        }
+    }
+}
+
+#[test]
+fn amounts_stay_while_their_range_changes() {
+    let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
+    let job = job(&soup(400, 0.3, 7), "bvh", Mode::Nodes);
+    let expected = render(&job, (80, 60), &Until::samples(1), &Pool::new("test", 1), &Cancel::new(), &Progress::new());
+    let expected: Vec<f32> = expected.expect("not cancelled").film.means().map(|m| m[0] / m[3]).collect();
+    let request = Request { job, width: 80, height: 60, max_samples: 1, range: None, tone: Tone::default(), keep: None };
+    let wait = |number: u64| -> Arc<Picture> {
+        let start = Instant::now();
+        loop {
+            assert!(start.elapsed() < Duration::from_secs(30), "no picture came");
+            match renderer.picture().filter(|p| p.request == number && p.progress.done) {
+                Some(picture) => return picture,
+                None => std::thread::sleep(Duration::from_millis(2)),
+            }
+        }
+    };
+    let fitted = wait(renderer.request(request.clone()));
+    let range = Range { min: 3.0, max: 9.0 };
+    let ranged = wait(renderer.request(Request { range: Some(range), ..request.clone() }));
+    assert!(ranged.range == range && fitted.range.min == 0.0 && fitted.rgba != ranged.rgba);
+    let same = |values: &[f32]| values.iter().zip(&expected).all(|(a, b)| a == b || a.is_nan() && b.is_nan());
+    for picture in [&fitted, &ranged] {
+        let amounts = picture.amounts.as_ref().expect("a heat map");
+        assert!(same(&amounts.values));
+        let seen = expected.iter().filter(|x| x.is_finite()).count();
+        assert_eq!(amounts.histogram.counts.iter().sum::<u32>() as usize, seen);
+    }
+    // (-1, -1) is the lower left pixel, (1, 1) the upper right.
+    for (at, pixel) in [([-1.0, -1.0], 59 * 80), ([1.0, 1.0], 79), ([0.01, 0.01], 29 * 80 + 40)] {
+        assert_eq!(fitted.amount_at(Vec2::from_array(at)), Some(expected[pixel]).filter(|x| x.is_finite()));
+    }
+    assert_eq!((fitted.amount_at(Vec2::splat(1.1)), fitted.amount_at(Vec2::NAN)), (None, None));
+    let mut shaded = request;
+    shaded.job.mode = Mode::Shaded;
+    assert!(wait(renderer.request(shaded)).amounts.is_none());
 }
 
 #[test]

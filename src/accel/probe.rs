@@ -30,6 +30,12 @@ pub trait Probe {
         let _ = node;
     }
 
+    /// So many entries wait on the stack of the traversal, or of the level that it is on.
+    #[inline(always)]
+    fn waiting(&mut self, entries: usize) {
+        let _ = entries;
+    }
+
     /// The bounds of a node were tested, to find out whether to enter it.
     #[inline(always)]
     fn bounds(&mut self, node: u32) {
@@ -118,7 +124,12 @@ impl Probe for Watched<'_> {
     const LISTENS: bool = true;
 
     fn level(&mut self, instance: u32) {
+        self.counts.level(instance);
         self.tell(Step::Level(instance));
+    }
+
+    fn waiting(&mut self, entries: usize) {
+        self.counts.waiting(entries);
     }
 
     fn at(&mut self, node: u32) {
@@ -185,7 +196,7 @@ impl Probe for Off {
 }
 
 /// How much a traversal did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     /// Nodes and cells entered, leaves among them.
     pub nodes: u64,
@@ -195,9 +206,36 @@ pub struct Counts {
     pub prims: u64,
     /// Hits found outside the cell they were found in: kept, not returned.
     pub outside: u64,
+    /// The most entries that waited on the stack at once, of one ray; those of the upper level wait while a ray is below. An
+    /// entry is a node that was put aside; of an octree it is a node whose octants are not all done.
+    pub stack: u64,
+    /// Entries that wait on the stack of the present level, and on that of the level above.
+    now: u64,
+    above: u64,
 }
 
+impl PartialEq for Counts {
+    /// What still waits is no part of what was done.
+    fn eq(&self, other: &Self) -> bool {
+        let done = |c: &Self| [c.nodes, c.leaves, c.prims, c.outside, c.stack];
+        done(self) == done(other)
+    }
+}
+
+impl Eq for Counts {}
+
 impl Probe for Counts {
+    #[inline(always)]
+    fn level(&mut self, instance: u32) {
+        (self.above, self.now) = if instance == 0 { (0, self.above) } else { (self.now, 0) };
+    }
+
+    #[inline(always)]
+    fn waiting(&mut self, entries: usize) {
+        self.now = entries as u64;
+        self.stack = self.stack.max(self.above + self.now);
+    }
+
     #[inline(always)]
     fn node(&mut self) {
         self.nodes += 1;
@@ -225,5 +263,31 @@ impl std::ops::AddAssign for Counts {
         self.leaves += other.leaves;
         self.prims += other.prims;
         self.outside += other.outside;
+        self.stack = self.stack.max(other.stack);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_level_above_waits_while_a_ray_is_below() {
+        let mut counts = Counts::default();
+        counts.waiting(3);
+        counts.level(7);
+        counts.waiting(2);
+        counts.waiting(1);
+        assert_eq!(counts.stack, 5);
+        counts.level(0);
+        counts.level(9); // another entry of the same leaf
+        counts.waiting(4);
+        assert_eq!(counts.stack, 7);
+        counts.level(0);
+        counts.waiting(0);
+        let mut sum = Counts { nodes: 2, ..Counts::default() };
+        sum += counts;
+        sum += Counts::default();
+        assert_eq!((sum.nodes, sum.stack), (2, 7), "of several rays it is the most");
     }
 }

@@ -16,7 +16,7 @@ use super::table::facts;
 use crate::accel::Accel;
 use crate::lab::format::{MISSING, bytes, count, duration, number, percent, rate, ratio};
 use crate::render::sampler::{SamplerKind, Sampling};
-use crate::render::{self, Job, LinearPicture, Looks, Mode, Still, Until, Work, auto_range};
+use crate::render::{self, HeatRays, Job, LinearPicture, Looks, Mode, Still, Until, Work, auto_range};
 use crate::scene::texture::Detail;
 use crate::scene::{CameraSpec, Geometry, Section};
 use crate::sys;
@@ -32,9 +32,13 @@ pub struct Args {
     /// The structure to trace through.
     #[arg(long, value_name = "ID", default_value = "bvh")]
     structure: One,
-    /// What is shown: shaded, path, ao, normals, depth, nodes, leaves or prims.
+    /// What is shown: shaded, path, ao, normals, depth, nodes, leaves, prims or stack.
     #[arg(long, default_value = "shaded")]
     mode: Mode,
+    /// Whose work nodes, leaves, prims and stack are: of the camera's rays (primary), or of rays that leave what they meet, to a light
+    /// beside the camera (shadow) or in a random direction (bounce).
+    #[arg(long, value_name = "KIND", default_value = "primary")]
+    heat_rays: HeatRays,
     /// Samples a pixel; at most, where --seconds or --until-error say when it is done [default: 16, or 65536 with those].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     spp: Option<u32>,
@@ -98,6 +102,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         sampling: Sampling { kind: args.sampler, seed: args.light.seed.seed },
         transport: args.light.transport.transport(),
         section: args.section.map(|section| section.of(model.geometry.world_bounds())),
+        heat_rays: args.heat_rays,
         ..Job::new(model.scene, built.accel, camera, args.mode, Arc::new(looks))
     };
     let size = (args.size.width, args.size.height);
@@ -130,6 +135,7 @@ impl Args {
             ("model", self.model.model.clone()),
             ("structure", self.structure.0.id.to_owned()),
             ("mode", self.mode.id().to_owned()),
+            ("heat_rays", self.heat_rays.id().to_owned()),
             ("spp", still.film.samples().to_string()),
             ("sampler", self.sampler.id().to_owned()),
             ("seed", self.light.seed.seed.to_string()),
@@ -194,10 +200,11 @@ fn text(args: &Args, still: &Still, [open, build]: [(&'static str, String); 2], 
     if args.mode.is_scalar() {
         let range = auto_range(&still.film, args.mode);
         let unit = match args.mode {
-            Mode::Nodes => " nodes visited by a ray",
-            Mode::Leaves => " leaves visited by a ray",
-            Mode::Prims => " triangles tested by a ray",
-            _ => "",
+            Mode::Nodes => format!(" nodes visited by {}", args.heat_rays.each()),
+            Mode::Leaves => format!(" leaves visited by {}", args.heat_rays.each()),
+            Mode::Prims => format!(" triangles tested by {}", args.heat_rays.each()),
+            Mode::Stack => format!(" entries on the stack at once, {}", args.heat_rays.each()),
+            _ => String::new(),
         };
         lines.push(("range", format!("{} to {}{unit}", number(range.min.into()), number(range.max.into()))));
     }

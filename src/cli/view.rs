@@ -7,7 +7,7 @@ use super::failure::Failure;
 use super::structures::One;
 use crate::accel::outline::Rank;
 use crate::geometry::Axis;
-use crate::render::Mode;
+use crate::render::{HeatRays, Mode};
 use crate::scene::Section;
 
 /// How the window begins. What is not said comes from the last time.
@@ -20,9 +20,12 @@ pub struct Args {
     /// The structure to show.
     #[arg(long, value_name = "ID")]
     pub structure: Option<One>,
-    /// What is shown: shaded, path, ao, normals, depth, nodes, leaves or prims.
+    /// What is shown: shaded, path, ao, normals, depth, nodes, leaves, prims or stack.
     #[arg(long)]
     pub mode: Option<Mode>,
+    /// Whose work nodes, leaves, prims and stack are: primary, shadow or bounce.
+    #[arg(long, value_name = "KIND")]
+    pub heat_rays: Option<HeatRays>,
     /// Samples a pixel after which to rest.
     #[arg(long, value_name = "N")]
     pub spp: Option<u32>,
@@ -35,6 +38,9 @@ pub struct Args {
     /// Show only the boxes of leaves.
     #[arg(long)]
     pub leaves_only: bool,
+    /// What colours of boxes stand for: depth, triangles, share (of the SAH cost), overlap or visits.
+    #[arg(long, value_name = "WHAT", value_parser = ["depth", "triangles", "share", "overlap", "visits"])]
+    pub color_boxes: Option<String>,
     /// Show no boxes and planes.
     #[arg(long)]
     pub no_overlay: bool,
@@ -57,6 +63,9 @@ pub struct Args {
     /// Measure every structure before the picture is saved.
     #[arg(long, requires = "screenshot")]
     pub measure: bool,
+    /// Time the tiles of the view and show them before the picture is saved.
+    #[arg(long, requires = "screenshot")]
+    pub time_tiles: bool,
     /// Begin in the Check workspace; with --screenshot, run the stability lab and open the first case that rays slip through.
     #[arg(long, conflicts_with = "measure")]
     pub check: bool,
@@ -94,21 +103,25 @@ pub struct Args {
 /// Opens the window and returns when it is closed.
 #[cfg(feature = "viewer")]
 pub fn run(args: Args) -> Result<(), Failure> {
-    use crate::viewer::{ViewerError, ViewerOptions, run, settings::ThemeChoice};
+    use crate::viewer::settings::{BoxColor, ThemeChoice};
+    use crate::viewer::{ViewerError, ViewerOptions, run};
     let theme = if args.light { Some(ThemeChoice::Light) } else { args.dark.then_some(ThemeChoice::Dark) };
     let options = ViewerOptions {
         model: args.model,
         structure: args.structure.map(|one| one.0.id.to_owned()),
         mode: args.mode,
+        heat_rays: args.heat_rays,
         camera: args.look.camera,
         section: args.section,
         depth: args.depth,
         leaves_only: args.leaves_only,
+        color_boxes: args.color_boxes.and_then(|what| BoxColor::of_id(&what)),
         no_overlay: args.no_overlay,
         samples: args.spp,
         theme,
         size: args.size.map(|size| [size.width as f32, size.height as f32]),
         measure: args.measure,
+        time_tiles: args.time_tiles,
         check: args.check,
         errors: args.errors.and_then(|plot| plot.parse().ok()),
         select: args.select,

@@ -2,22 +2,18 @@
 //! few sentences that come of it, ranked by the nanoseconds of a ray that they account for.
 
 use std::collections::HashMap;
-use std::hash::Hash;
 use std::sync::Arc;
-use std::time::Instant;
-
-use rayon::prelude::*;
 
 use super::costs::{Costs, FitOptions, fit_costs};
 use super::format::{capital, count, number, percent};
 use super::measure::Contestant;
 use super::rays::{RayKind, RaySet};
+use super::tally::{Prim, Tally, Tested, shrunk};
 use crate::accel::outline::Outline;
 use crate::accel::params::{ParamValues, Value};
-use crate::accel::probe::{Counts, Watched};
 use crate::accel::registry::{Entry, Family};
-use crate::accel::{Accel, CellId, Mode, Step};
-use crate::geometry::{Aabb, Ray};
+use crate::accel::{Accel, CellId};
+use crate::geometry::Aabb;
 use crate::render::Job;
 use crate::scene::Scene;
 use crate::task::{Cancel, Cancelled, Pool, Progress};
@@ -103,10 +99,6 @@ pub struct Findings {
 
 /// About so many pixels have their rays followed.
 const PIXELS: f64 = 8000.0;
-/// Seconds after which no more rays are followed.
-const SECS: f64 = 2.0;
-/// Rays followed at a time.
-const CHUNK: usize = 64;
 /// At most so many sentences.
 const MOST: usize = 5;
 /// At most so many triangles whose boxes fit badly.
@@ -119,72 +111,6 @@ const FULL: u32 = 8;
 const PER_CHECK: u32 = 1 << 12;
 /// What takes less than this part is not worth a sentence.
 const LEAST: f64 = 0.1;
-
-/// A triangle, by the level that it is on (see [`CellId`]) and its number there.
-type Prim = (u32, u32);
-
-/// What rays did.
-#[derive(Default)]
-struct Tally {
-    rays: usize,
-    /// In all.
-    counts: Counts,
-    visits: HashMap<CellId, u64>,
-    tests: HashMap<Prim, Tested>,
-}
-
-/// What became of a triangle.
-#[derive(Clone, Copy, Default)]
-struct Tested {
-    tests: u64,
-    hits: u64,
-    /// A leaf that it was tested in.
-    leaf: Option<CellId>,
-}
-
-impl Tested {
-    fn add(&mut self, other: Self) {
-        self.tests += other.tests;
-        self.hits += other.hits;
-        self.leaf = self.leaf.or(other.leaf);
-    }
-}
-
-impl Tally {
-    fn follow(&mut self, accel: &dyn Accel, ray: &Ray, mode: Mode, cancel: &Cancel) -> Result<(), Cancelled> {
-        let (mut level, mut leaf) = (0, None);
-        let mut listener = |step| match step {
-            Step::Level(instance) => (level, leaf) = (instance, None),
-            Step::Entered(node) => {
-                let cell = CellId { instance: level, node };
-                *self.visits.entry(cell).or_default() += 1;
-                leaf = Some(cell);
-            }
-            Step::Tested(prim, t) => {
-                self.tests.entry((level, prim)).or_default().add(Tested { tests: 1, hits: u64::from(t.is_some()), leaf });
-            }
-            Step::Pruned(..) | Step::OutsideCell => {}
-        };
-        let mut counts = Counts::default();
-        let mut watched = Watched { counts: &mut counts, listener: Some(&mut listener) };
-        accel.trace_heard(ray, mode, &mut watched, cancel)?;
-        self.counts += counts;
-        self.rays += 1;
-        Ok(())
-    }
-
-    fn add(mut self, other: Self) -> Self {
-        self.rays += other.rays;
-        self.counts += other.counts;
-        merge(&mut self.visits, other.visits, |a, b| *a += b);
-        merge(&mut self.tests, other.tests, Tested::add);
-        self
-    }
-}
-
-fn merge<K: Eq + Hash, V: Default>(into: &mut HashMap<K, V>, from: HashMap<K, V>, add: impl Fn(&mut V, V)) {
-    from.into_iter().for_each(|(key, value)| add(into.entry(key).or_default(), value));
-}
 
 /// Looks for what makes the rays of a view of that shape slow in the structure of a job, which was built with such parameters and
 /// whose cells the outline lists; primary rays, and as many that leave what they meet.
@@ -199,12 +125,11 @@ pub fn find(
     cancel: &Cancel,
     progress: &Progress,
 ) -> Result<Findings, Cancelled> {
-    let shrink = (PIXELS / (f64::from(size[0].max(1)) * f64::from(size[1].max(1)))).sqrt().min(1.0);
-    let [width, height] = size.map(|n| crate::geometry::num::index((f64::from(n) * shrink).ceil().max(1.0) as usize));
+    let [width, height] = shrunk(size, PIXELS);
     let of = |kind| RaySet::generate(kind, job, width, height, pool, cancel);
     let sets = [of(RayKind::Primary)?, of(RayKind::Diffuse)?];
     let accel = job.accel.as_ref();
-    let tally = tally(accel, &sets, pool, cancel, progress)?;
+    let tally = Tally::of(accel, &sets, pool, cancel, progress)?;
     progress.start("costs", 0);
     let contestant = [Contestant { id: String::new(), accel: Arc::clone(&job.accel) }];
     let options = FitOptions { rounds: 3, cap_secs: 1.0 };
@@ -212,27 +137,6 @@ pub fn find(
     let costs = fit_costs(&contestant, &both, &options, pool, cancel, progress)?.into_iter().next().flatten();
     let cut = matches!(params.iter().find(|(param, _)| param.id == "builder"), Some((_, Value::Choice("sbvh"))));
     Ok(Finder::new(accel, &job.scene, (entry, cut, outline), &tally, costs, cancel)?.findings())
-}
-
-fn tally(accel: &dyn Accel, sets: &[RaySet], pool: &Pool, cancel: &Cancel, progress: &Progress) -> Result<Tally, Cancelled> {
-    let rays: Vec<(Ray, Mode)> = sets.iter().flat_map(|set| set.rays.iter().map(|ray| (*ray, set.mode))).collect();
-    // Every so many-th ray is a chunk: if there is no time for all, those that were followed are from everywhere.
-    let chunks = rays.len().div_ceil(CHUNK);
-    progress.start("rays", rays.len() as u64);
-    let begin = Instant::now();
-    let chunk = |first: usize| {
-        let mut tally = Tally::default();
-        if first > 0 && begin.elapsed().as_secs_f64() > SECS {
-            return Ok(tally);
-        }
-        for (ray, mode) in rays.iter().skip(first).step_by(chunks) {
-            tally.follow(accel, ray, *mode, cancel)?;
-        }
-        progress.advance(tally.rays as u64);
-        Ok(tally)
-    };
-    let add = |a: Tally, b: Tally| Ok(a.add(b));
-    pool.run(|| (0..chunks).into_par_iter().map(chunk).try_reduce(Tally::default, add))
 }
 
 /// What the tally comes to.

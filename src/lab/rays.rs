@@ -6,8 +6,8 @@ use super::lines::line;
 use crate::accel::{Accel, Hit, Mode};
 use crate::geometry::Ray;
 use crate::render::Job;
-use crate::render::sampler::{Random, cosine_direction};
-use crate::render::spawn::Point;
+use crate::render::sampler::Random;
+use crate::render::spawn::{BOUNCE, Point, light_beside};
 use crate::scene::{Camera, Geometry};
 use crate::task::{Cancel, Cancelled, Pool};
 use glam::Vec3;
@@ -122,10 +122,7 @@ type FromPixel = ((u32, u32), Ray);
 /// Rows of a picture made at a time.
 const ROWS: u32 = 4;
 
-/// The sampler's dimension of the bounce; 0 is the place in the pixel, 1 ambient occlusion.
-const BOUNCE: u32 = 2;
-
-/// That of the place where a shuffled ray goes.
+/// The sampler's dimension of the place where a shuffled ray goes; those before it are the renderer's.
 const SHUFFLE: u32 = 3;
 
 impl RaySet {
@@ -154,7 +151,7 @@ impl RaySet {
         if kind == RayKind::Lines {
             return Self::lines(job.accel.geometry(), u64::from(width) * u64::from(height), pool, cancel);
         }
-        let light = light(&job.camera);
+        let light = light_beside(&job.camera);
         let band = |first: u32| {
             cancel.check()?;
             let rays = job.camera_rays(width, height, first..height.min(first + ROWS), 0);
@@ -215,7 +212,7 @@ pub fn leaving(kind: RayKind, accel: &dyn Accel, camera: &Camera, ray: &Ray, can
     let mut hit = [None];
     accel.trace(std::slice::from_ref(ray), Mode::Closest, &mut hit, cancel)?;
     let geometry = accel.geometry();
-    let leave = |hit: &Hit| second(kind, &Point::of(geometry, ray, hit), geometry, light(camera), &Random::new(0, 0, 0));
+    let leave = |hit: &Hit| second(kind, &Point::of(geometry, ray, hit), geometry, light_beside(camera), &Random::new(0, 0, 0));
     Ok(hit[0].as_ref().map(leave))
 }
 
@@ -223,17 +220,8 @@ pub fn leaving(kind: RayKind, accel: &dyn Accel, camera: &Camera, ray: &Ray, can
 fn second(kind: RayKind, point: &Point, geometry: &Geometry, light: Vec3, sampler: &Random) -> Ray {
     match kind {
         RayKind::Primary | RayKind::Shadow | RayKind::Lines => point.segment_to(geometry, light),
-        RayKind::Diffuse | RayKind::Shuffled => point.ray(geometry, cosine_direction(point.normal, sampler.pair(BOUNCE))),
+        RayKind::Diffuse | RayKind::Shuffled => point.bounce(geometry, sampler.pair(BOUNCE)),
     }
-}
-
-/// Where the light of shadow rays stands: up and to the right of the camera by half and a quarter
-/// of its distance to what it looks at, so that shadows are seen beside the things that throw them
-/// and the light is inside a room if the camera is.
-fn light(camera: &Camera) -> Vec3 {
-    let frame = camera.frame();
-    let distance = camera.distance();
-    camera.eye + (frame.up * 0.5 + frame.right * 0.25) * distance
 }
 
 /// Every bit of a column or row moved to twice its place, so that two of them interleave.

@@ -104,20 +104,25 @@ pub struct Development {
 /// A range that suits the film: 0 to the amount that one pixel in two hundred exceeds; for depths,
 /// from the nearest to the farthest.
 pub fn auto_range(film: &Film, mode: Mode) -> Range {
-    let mut amounts: Vec<f32> = film.means().filter(|m| m[3] > 0.0).map(|m| m[0] / m[3]).collect();
+    let amounts: Vec<f32> = film.means().filter(|m| m[3] > 0.0).map(|m| m[0] / m[3]).collect();
+    fitting(amounts, mode == Mode::Depth)
+}
+
+/// The same of amounts, which may be depths.
+pub(super) fn fitting(mut amounts: Vec<f32>, depths: bool) -> Range {
     if amounts.is_empty() {
         return Range { min: 0.0, max: 1.0 };
     }
     amounts.sort_unstable_by(f32::total_cmp);
     let last = amounts.len() - 1;
-    match mode {
-        Mode::Depth => Range { min: amounts[0], max: amounts[last].max(amounts[0].next_up()) },
-        _ => Range { min: 0.0, max: amounts[last - last / 200].max(1.0).ceil() },
+    match depths {
+        true => Range { min: amounts[0], max: amounts[last].max(amounts[0].next_up()) },
+        false => Range { min: 0.0, max: amounts[last - last / 200].max(1.0).ceil() },
     }
 }
 
 /// Pixels developed at a time.
-const CHUNK: usize = 4096;
+pub(super) const CHUNK: usize = 4096;
 
 impl Development {
     /// Four bytes a pixel (red, green, blue, opacity), row 0 at the top. Runs on the threads of the
@@ -171,7 +176,7 @@ fn srgb(x: f32) -> f32 {
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-fn byte(x: f32) -> u8 {
+pub(super) fn byte(x: f32) -> u8 {
     (x * 255.0 + 0.5) as u8
 }
 

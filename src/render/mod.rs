@@ -1,9 +1,11 @@
 //! From a camera to a picture: rays, samples, shading, the film they gather on, and the scheduler
 //! that refines a picture while nobody waits for it.
 
+mod amounts;
 pub mod colormap;
 mod develop;
 mod film;
+mod heat;
 pub mod light;
 mod linear;
 mod looks;
@@ -19,8 +21,10 @@ mod still;
 mod tile;
 mod work;
 
+pub use amounts::{Amounts, Histogram};
 pub use develop::{Curve, Development, Range, Tone, auto_range, encode};
 pub use film::Film;
+pub use heat::HeatRays;
 pub use light::Transport;
 pub use linear::{LinearError, LinearPicture};
 pub use looks::Looks;

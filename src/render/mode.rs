@@ -1,5 +1,7 @@
 //! What a picture shows.
 
+use crate::accel::probe::Counts;
+
 /// A way to turn a hit, or the work it took, into a colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -15,18 +17,20 @@ pub enum Mode {
     Ao,
     /// Light, followed from surface to surface.
     Path,
-    /// Nodes visited by the camera ray.
+    /// Nodes visited by a ray.
     Nodes,
-    /// Leaves visited by the camera ray.
+    /// Leaves visited by a ray.
     Leaves,
-    /// Primitives tested by the camera ray.
+    /// Primitives tested by a ray.
     Prims,
+    /// Entries that wait on the stack at once while a ray is traced.
+    Stack,
 }
 
 impl Mode {
     /// All of them, in the order of menus.
-    pub const ALL: [Self; 8] =
-        [Self::Shaded, Self::Path, Self::Ao, Self::Normals, Self::Depth, Self::Nodes, Self::Leaves, Self::Prims];
+    pub const ALL: [Self; 9] =
+        [Self::Shaded, Self::Path, Self::Ao, Self::Normals, Self::Depth, Self::Nodes, Self::Leaves, Self::Prims, Self::Stack];
 
     /// The name used on the command line and in files.
     pub const fn id(self) -> &'static str {
@@ -39,6 +43,7 @@ impl Mode {
             Self::Nodes => "nodes",
             Self::Leaves => "leaves",
             Self::Prims => "prims",
+            Self::Stack => "stack",
         }
     }
 
@@ -53,6 +58,7 @@ impl Mode {
             Self::Nodes => "Nodes visited",
             Self::Leaves => "Leaves visited",
             Self::Prims => "Primitives tested",
+            Self::Stack => "Stack depth",
         }
     }
 
@@ -64,15 +70,16 @@ impl Mode {
             Self::Depth => "Distance from the camera, near is bright.",
             Self::Path => "Light from the model's lamps, or from a sky where it has none, followed from surface to surface.",
             Self::Ao => "How much of the sky each point sees: one random ray a sample.",
-            Self::Nodes => "How many nodes or cells each camera ray visits in the structure.",
-            Self::Leaves => "How many leaves, which hold triangles, each camera ray visits.",
-            Self::Prims => "How many triangles each camera ray is tested against.",
+            Self::Nodes => "How many nodes or cells each ray visits in the structure.",
+            Self::Leaves => "How many leaves, which hold triangles, each ray visits.",
+            Self::Prims => "How many triangles each ray is tested against.",
+            Self::Stack => "How many nodes wait on the stack at once, at most, while each ray is traced; in an octree, levels.",
         }
     }
 
     /// Whether pixels are amounts that a range turns into colours, rather than colours.
     pub const fn is_scalar(self) -> bool {
-        matches!(self, Self::Depth | Self::Nodes | Self::Leaves | Self::Prims)
+        self.is_heat() || matches!(self, Self::Depth)
     }
 
     /// Rays that a pixel takes for a sample, about: what a pass takes is foreseen by it.
@@ -84,9 +91,19 @@ impl Mode {
         }
     }
 
+    /// What of a traversal's counts is shown.
+    pub(super) const fn amount(self, counts: &Counts) -> u64 {
+        match self {
+            Self::Nodes => counts.nodes,
+            Self::Leaves => counts.leaves,
+            Self::Stack => counts.stack,
+            _ => counts.prims,
+        }
+    }
+
     /// Whether the traversal is watched.
     pub const fn is_heat(self) -> bool {
-        matches!(self, Self::Nodes | Self::Leaves | Self::Prims)
+        matches!(self, Self::Nodes | Self::Leaves | Self::Prims | Self::Stack)
     }
 }
 

@@ -1,11 +1,13 @@
 //! A finished pass as the window gets it.
 
-use super::Range;
+use super::{Amounts, Range};
 use std::sync::Arc;
 
 use crate::accel::probe::Counts;
+use crate::geometry::num::floor_index;
 use crate::scene::Camera;
 use crate::task::Charge;
+use glam::Vec2;
 
 /// Bytes to show, the depth behind them, and how they came to be.
 #[derive(Clone, Debug)]
@@ -26,10 +28,26 @@ pub struct Picture {
     pub depth: Arc<Vec<f32>>,
     /// The range that amounts were mapped with.
     pub range: Range,
+    /// The amounts of a heat map.
+    pub amounts: Option<Arc<Amounts>>,
     /// How far the picture is.
     pub progress: Progress,
     /// What was kept on the way, if that was asked for.
     pub shots: Vec<Arc<Shot>>,
+}
+
+impl Picture {
+    /// The amount at a place: (-1, -1) is the lower left corner, (1, 1) the upper right. `None` outside, where nothing is seen,
+    /// and of pictures that are no heat maps.
+    pub fn amount_at(&self, at: Vec2) -> Option<f32> {
+        let inside = at.abs().max_element() <= 1.0;
+        let place = |x: f32, n: u32| {
+            let last = n.saturating_sub(1) as usize;
+            floor_index(f64::from(x * 0.5 + 0.5) * f64::from(n), last)
+        };
+        let pixel = place(-at.y, self.height) * self.width as usize + place(at.x, self.width);
+        self.amounts.as_ref().filter(|_| inside)?.values.get(pixel).copied().filter(|amount| amount.is_finite())
+    }
 }
 
 /// What is kept of a picture on its way: the light of so many samples.

@@ -11,7 +11,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::tile::Job;
-use super::{Development, Film, Mode, Picture, Progress, Range, Shot, Tone, auto_range};
+use super::{Amounts, Development, Film, Mode, Picture, Progress, Range, Shot, Tone, auto_range};
 use crate::accel;
 use crate::accel::probe::Counts;
 use crate::task::{Budget, Cancel, Cancelled, Pool};
@@ -50,8 +50,8 @@ impl Request {
     fn has_samples_of(&self, other: &Self) -> bool {
         let (a, b) = (&self.job, &other.job);
         let same = Arc::ptr_eq(&a.scene, &b.scene) && Arc::ptr_eq(&a.accel, &b.accel) && Arc::ptr_eq(&a.looks, &b.looks);
-        let how =
-            (a.camera, a.mode, a.sampling, a.transport, a.section) == (b.camera, b.mode, b.sampling, b.transport, b.section);
+        let how = (a.camera, a.mode, a.sampling, a.transport) == (b.camera, b.mode, b.sampling, b.transport)
+            && (a.section, a.heat_rays) == (b.section, b.heat_rays);
         same && how && (self.width, self.height) == (other.width, other.height) && self.keep.is_some() == other.keep.is_some()
     }
 }
@@ -349,7 +349,9 @@ impl<N: Fn()> Worker<N> {
             done,
         };
         self.generation += 1;
-        let rgba = self.pool.run(|| Development { mode, range, tone: task.request.tone, background: None }.develop(film));
+        let development = Development { mode, range, tone: task.request.tone, background: None };
+        let amounts = || mode.is_heat().then(|| Arc::new(Amounts::of(film)));
+        let (rgba, amounts) = self.pool.run(|| (development.develop(film), amounts()));
         let picture = Picture {
             generation: self.generation,
             request: task.number,
@@ -359,6 +361,7 @@ impl<N: Fn()> Worker<N> {
             rgba,
             depth: Arc::clone(film.depth()),
             range,
+            amounts,
             progress,
             shots: task.shots.clone(),
         };
@@ -391,7 +394,7 @@ impl<N: Fn()> Worker<N> {
             }
         }
         // Both calls of each ray together are a little slower than one; occlusion takes a second ray.
-        let weight = request.job.mode.rays_per_pixel();
+        let weight = request.job.rays_per_pixel();
         task.ray_secs = weight * start.elapsed().as_secs_f64() / task.counted as f64 / self.pool.threads() as f64;
         let secs_per_pixel = task.ray_secs + self.overhead_secs;
         let pixels = f64::from(request.width) * f64::from(request.height);

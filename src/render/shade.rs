@@ -93,7 +93,7 @@ pub fn shader(mode: Mode, needs: Needs) -> Shader {
         Mode::Path => |_, _, _| [0.0; 4],
         Mode::Depth => |_, _, hit| opaque(Vec3::splat(hit.t)),
         Mode::Ao => |_, _, _| opaque(Vec3::ONE),
-        Mode::Nodes | Mode::Leaves | Mode::Prims => |_, _, _| opaque(Vec3::ZERO),
+        Mode::Nodes | Mode::Leaves | Mode::Prims | Mode::Stack => |_, _, _| opaque(Vec3::ZERO),
     }
 }
 

@@ -1,15 +1,19 @@
 //! Rays that leave a surface.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
+use super::sampler::cosine_direction;
 use crate::accel::Hit;
 use crate::geometry::num::UNIT_ROUNDOFF;
 use crate::geometry::{Aabb, Ray};
-use crate::scene::Geometry;
+use crate::scene::{Camera, Geometry};
 
 /// More than the roundings that a point of a surface and the next ray's test carry: each of three terms of the point is
 /// rounded three times, and twelve displace a plane that is met (see [`crate::geometry::Slabs`]).
 const ROUNDINGS: f32 = 16.0;
+
+/// The sampler's dimension of a bounce; 0 is the place in the pixel, 1 ambient occlusion.
+pub const BOUNCE: u32 = 2;
 
 /// A point on a surface that rays may leave from.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +49,11 @@ impl Point {
         Ray::new(self.start(geometry), dir)
     }
 
+    /// The ray from here in a random direction about the normal.
+    pub fn bounce(&self, geometry: &Geometry, numbers: Vec2) -> Ray {
+        self.ray(geometry, cosine_direction(self.normal, numbers))
+    }
+
     /// The segment from here to a point in the world; it ends before that point by as much as a surface through it may
     /// be found too near.
     pub fn segment_to(&self, geometry: &Geometry, to: Vec3) -> Ray {
@@ -59,4 +68,13 @@ impl Point {
     fn start(&self, geometry: &Geometry) -> Vec3 {
         geometry.space().world_point(self.at + self.normal * self.clearance)
     }
+}
+
+/// Where the light of shadow rays stands: up and to the right of the camera by half and a quarter
+/// of its distance to what it looks at, so that shadows are seen beside the things that throw them
+/// and the light is inside a room if the camera is.
+pub fn light_beside(camera: &Camera) -> Vec3 {
+    let frame = camera.frame();
+    let distance = camera.distance();
+    camera.eye + (frame.up * 0.5 + frame.right * 0.25) * distance
 }

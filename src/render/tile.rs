@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use super::film::Band;
 use super::light::Sources;
-use super::sampler::{Sampling, on_screen};
+use super::sampler::{Sampler, Sampling, on_screen};
 use super::shade::{occlusion_ray, shader};
 use super::work::{Watch, Work};
-use super::{Film, Looks, Mode, Transport};
+use super::{Film, HeatRays, Looks, Mode, Transport};
 use crate::accel::probe::Counts;
 use crate::accel::{self, Accel, Hit};
 use crate::geometry::num::{floor_index, narrow};
@@ -37,6 +37,8 @@ pub struct Job {
     pub transport: Transport,
     /// What of the world the camera's rays see, if not all of it; rays that leave what they meet see all.
     pub section: Option<HalfSpace>,
+    /// Whose work is shown, where work is.
+    pub heat_rays: HeatRays,
 }
 
 impl std::fmt::Debug for Job {
@@ -54,8 +56,8 @@ type Pixels = Vec<(u32, u32)>;
 impl Job {
     /// With independent samples, light followed as usual, and nothing cut away.
     pub fn new(scene: Arc<Scene>, accel: Arc<dyn Accel>, camera: Camera, mode: Mode, looks: Arc<Looks>) -> Self {
-        let (sampling, transport) = (Sampling::default(), Transport::default());
-        Self { scene, accel, camera, mode, looks, sampling, transport, section: None }
+        let (sampling, transport, heat_rays) = (Sampling::default(), Transport::default(), HeatRays::default());
+        Self { scene, accel, camera, mode, looks, sampling, transport, heat_rays, section: None }
     }
 
     /// The camera rays of a sample, row by row.
@@ -75,7 +77,8 @@ impl Job {
         self.section.map_or(ray, |section| section.cut(&ray))
     }
 
-    fn rays_of(&self, pixels: impl Iterator<Item = (u32, u32)>, [width, height]: [u32; 2], sample: u32) -> Vec<Ray> {
+    /// Those of some pixels.
+    pub(super) fn rays_of(&self, pixels: impl Iterator<Item = (u32, u32)>, [width, height]: [u32; 2], sample: u32) -> Vec<Ray> {
         let frame = self.camera.frame();
         let size = Vec2::new(width as f32, height as f32);
         let ray = |(x, y): (u32, u32)| {
@@ -87,10 +90,16 @@ impl Job {
         pixels.map(ray).collect()
     }
 
-    /// Columns and rows outside of which no ray meets the scene's bounds. What a structure does with a ray is shown for all
-    /// of them.
+    /// Rays that a pixel takes for a sample, about: what a pass takes is foreseen by it.
+    pub fn rays_per_pixel(&self) -> f64 {
+        let leaving = self.mode.is_heat() && self.heat_rays != HeatRays::Primary;
+        if leaving { 2.0 } else { self.mode.rays_per_pixel() }
+    }
+
+    /// Columns and rows outside of which no ray meets the scene's bounds. What a structure does with the camera's rays is shown
+    /// for all of them.
     fn seen(&self, width: u32, height: u32) -> [Range<u32>; 2] {
-        if self.mode.is_heat() {
+        if self.mode.is_heat() && self.heat_rays == HeatRays::Primary {
             return [0..width, 0..height];
         }
         let Some([low, high]) = self.camera.window(self.accel.geometry().world_bounds(), width as f32 / height as f32) else {
@@ -151,8 +160,9 @@ impl Job {
         let mut hits = vec![None; rays.len()];
         work.rays = rays.len() as u64;
         watch.lap(&mut work.rest);
+        let sampler = |i: usize| self.sampling.of(pixels[i].0, pixels[i].1, sample);
         if self.mode.is_heat() {
-            self.watch(&rays, &mut hits, &mut samples, cancel)?;
+            work.rays += self.watch(&rays, sampler, &mut hits, &mut samples, cancel)?;
         } else {
             self.trace(&rays, accel::Mode::Closest, &mut hits, cancel)?;
         }
@@ -160,7 +170,6 @@ impl Job {
         if !self.mode.is_heat() {
             self.shade(&rays, &hits, &mut samples);
         }
-        let sampler = |i: usize| self.sampling.of(pixels[i].0, pixels[i].1, sample);
         if self.mode == Mode::Ao {
             watch.lap(&mut work.shading);
             work.rays += self.occlude(&rays, &hits, |i| sampler(i).pair(1), &mut samples, cancel)?;
@@ -207,20 +216,39 @@ impl Job {
         }
     }
 
-    /// Traces and counts, one ray at a time. What a structure does is shown as if all surfaces were solid.
-    fn watch(&self, rays: &[Ray], hits: &mut [Option<Hit>], samples: &mut [[f32; 4]], cancel: &Cancel) -> Result<(), Cancelled> {
-        for ((ray, hit), sample) in rays.iter().zip(hits).zip(samples) {
+    /// Traces and counts, one ray at a time. What a structure does is shown as if all surfaces were solid. Returns how many rays
+    /// left what the camera's met.
+    fn watch(
+        &self,
+        rays: &[Ray],
+        sampler: impl Fn(usize) -> Sampler,
+        hits: &mut [Option<Hit>],
+        samples: &mut [[f32; 4]],
+        cancel: &Cancel,
+    ) -> Result<u64, Cancelled> {
+        let counted = |ray: &Ray, mode: accel::Mode| -> Result<(Option<Hit>, u64), Cancelled> {
             let mut counts = Counts::default();
-            *hit = self.accel.trace_watched(ray, accel::Mode::Closest, &mut counts, cancel)?;
-            let amount = match self.mode {
-                Mode::Nodes => counts.nodes,
-                Mode::Leaves => counts.leaves,
-                _ => counts.prims,
-            };
-            // A ray that does nothing at all is background.
-            *sample = [amount as f32, 0.0, 0.0, f32::from(u8::from(hit.is_some() || amount > 0))];
+            let hit = self.accel.trace_watched(ray, mode, &mut counts, cancel)?;
+            Ok((hit, self.mode.amount(&counts)))
+        };
+        if self.heat_rays == HeatRays::Primary {
+            for ((ray, hit), sample) in rays.iter().zip(hits).zip(samples) {
+                let (met, amount) = counted(ray, accel::Mode::Closest)?;
+                *hit = met;
+                // A ray that does nothing at all is background.
+                *sample = [amount as f32, 0.0, 0.0, f32::from(u8::from(met.is_some() || amount > 0))];
+            }
+            return Ok(0);
         }
-        Ok(())
+        self.accel.trace(rays, accel::Mode::Closest, hits, cancel)?;
+        let mut leaving = 0;
+        for (i, ((ray, hit), sample)) in rays.iter().zip(hits.iter()).zip(samples).enumerate() {
+            let Some(hit) = hit else { continue };
+            let (_, amount) = counted(&self.leaving(ray, hit, &sampler(i)), self.heat_rays.mode())?;
+            *sample = [amount as f32, 0.0, 0.0, 1.0];
+            leaving += 1;
+        }
+        Ok(leaving)
     }
 
     /// Darkens the samples whose occlusion ray meets something; returns how many rays that took.

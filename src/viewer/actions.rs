@@ -5,15 +5,15 @@ use std::borrow::Cow;
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
-use super::panels::toolbar;
+use super::panels::{self, toolbar};
 use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, SectionSettings, ThemeChoice, Workspace};
 use super::state::State;
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::accel::registry;
 use crate::geometry::Axis;
-use crate::render::Mode;
 use crate::render::sampler::SamplerKind;
+use crate::render::{HeatRays, Mode};
 use crate::scene::{Section, builtin};
 
 /// One thing that can be done.
@@ -187,8 +187,16 @@ fn view(list: &mut List, state: &State) {
     list.add("View before", Command::CameraBack).key(CAMERA_BACK).if_possible(state.cameras.has_back());
     list.add("View after", Command::CameraForward).key(CAMERA_FORWARD).if_possible(state.cameras.has_forward());
     for mode in Mode::ALL {
-        list.add(format!("Picture: {}", mode.label()), Command::Mode(mode)).if_possible(mode != state.settings.mode);
+        let other = mode != state.settings.mode || state.tiles.shown;
+        list.add(format!("Picture: {}", mode.label()), Command::Mode(mode)).if_possible(state.offers(mode) && other);
     }
+    list.add(format!("Picture: {}", toolbar::TILES), Command::ShowTiles(true)).if_possible(open && !state.tiles.shown);
+    let heat = panels::heat::is_shown(state);
+    for rays in HeatRays::ALL {
+        let other = heat && rays != state.settings.heat_rays;
+        list.add(format!("Heat map: {}", rays.label()), Command::HeatRays(rays)).if_possible(other);
+    }
+    list.add("Heat map: fit the range", Command::HeatRange(None)).if_possible(heat && state.range.is_some());
     for sampler in SamplerKind::ALL {
         let path = state.settings.mode == Mode::Path && sampler != state.settings.sampler;
         list.add(format!("Sampler: {}", sampler.label()), Command::Sampler(sampler)).if_possible(path);
@@ -285,6 +293,7 @@ fn ray(list: &mut List, state: &State) {
 fn measure(list: &mut List, state: &State) {
     let free = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
     list.add("Measure all structures", Command::Measure).if_possible(free);
+    list.add("Time the tiles of the view", Command::TimeTiles).if_possible(free && state.tiles.shown);
     list.add("Look for causes of slow rays", Command::FindCauses).if_possible(free);
     list.add("Measure quality against its cost", Command::MeasureTradeoffs).if_possible(free);
     list.add("Measure what leaving out saves", Command::MeasureNeeds).if_possible(free);

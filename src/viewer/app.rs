@@ -142,19 +142,22 @@ impl App {
     fn sides(&mut self, ui: &mut Ui) {
         let (state, commands) = (&self.state, &mut self.commands);
         let workspace = state.settings.workspace;
-        let beside = move |ui: &mut Ui, commands: &mut Commands| match workspace {
-            Workspace::View => {
-                panels::statistics::show(ui, state, commands);
-                panels::selection::show(ui, state, commands);
-                panels::brute::show(ui, state, commands);
+        let beside = move |ui: &mut Ui, commands: &mut Commands| {
+            panels::heat::show(ui, state, commands);
+            match workspace {
+                Workspace::View => {
+                    panels::statistics::show(ui, state, commands);
+                    panels::selection::show(ui, state, commands);
+                    panels::brute::show(ui, state, commands);
+                }
+                Workspace::Structure => panels::node::show(ui, state, commands),
+                Workspace::Ray => {
+                    panels::ray::show(ui, state, commands);
+                    panels::brute::show(ui, state, commands);
+                }
+                Workspace::Compare => panels::error_side::show(ui, state, commands),
+                Workspace::Check => panels::check::show(ui, state, commands),
             }
-            Workspace::Structure => panels::node::show(ui, state, commands),
-            Workspace::Ray => {
-                panels::ray::show(ui, state, commands);
-                panels::brute::show(ui, state, commands);
-            }
-            Workspace::Compare => panels::error_side::show(ui, state, commands),
-            Workspace::Check => panels::check::show(ui, state, commands),
         };
         let narrow = ui.available_width() < theme::FOLD_BELOW;
         let id = |name: &str| egui::Id::unique((name, self.layout));

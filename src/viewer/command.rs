@@ -10,7 +10,7 @@ use crate::geometry::Axis;
 use crate::geometry::tri::TestKind;
 use crate::lab::{PixelRect, RayKind};
 use crate::render::sampler::SamplerKind;
-use crate::render::{Mode, Range, Tone};
+use crate::render::{HeatRays, Mode, Range, Tone};
 use crate::scene::Camera;
 use glam::Vec2;
 
@@ -35,6 +35,14 @@ pub enum Command {
     CancelBuild,
     /// Show something else of the hits.
     Mode(Mode),
+    /// Show the work of other rays.
+    HeatRays(HeatRays),
+    /// Show nanoseconds by tiles of the picture, or the picture again.
+    ShowTiles(bool),
+    /// Time the tiles of the present view.
+    TimeTiles,
+    /// Stop that.
+    CancelTiles,
     /// Map amounts with a fixed range, or with one that suits.
     HeatRange(Option<Range>),
     /// Other boxes and planes.

@@ -34,6 +34,7 @@ pub mod settings;
 mod shown;
 pub mod state;
 pub mod theme;
+pub mod tiles;
 mod timings;
 pub mod tradeoffs;
 pub mod tree;

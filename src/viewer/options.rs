@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::settings::{Settings, ThemeChoice, Workspace};
+use super::settings::{BoxColor, Settings, ThemeChoice, Workspace};
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::geometry::Axis;
-use crate::render::Mode;
+use crate::render::{HeatRays, Mode};
 use crate::scene::{CameraSpec, Section};
 
 /// How the window begins. What is not set comes from the settings of the last time.
@@ -18,6 +18,8 @@ pub struct ViewerOptions {
     pub structure: Option<String>,
     /// What is shown.
     pub mode: Option<Mode>,
+    /// Whose work heat maps show.
+    pub heat_rays: Option<HeatRays>,
     /// From where it is seen at first.
     pub camera: Option<CameraSpec>,
     /// Where it is cut open at first.
@@ -26,6 +28,8 @@ pub struct ViewerOptions {
     pub depth: Option<u32>,
     /// Only the boxes of leaves.
     pub leaves_only: bool,
+    /// What colours of boxes stand for.
+    pub color_boxes: Option<BoxColor>,
     /// No boxes and planes at all.
     pub no_overlay: bool,
     /// Samples after which to rest.
@@ -36,6 +40,8 @@ pub struct ViewerOptions {
     pub size: Option<[f32; 2]>,
     /// Measure every structure once the picture is there; only with `screenshot`.
     pub measure: bool,
+    /// Time the tiles of the view and show them; only with `screenshot`.
+    pub time_tiles: bool,
     /// Begin in the Check workspace; with `screenshot`, run the lab first.
     pub check: bool,
     /// Begin in the Compare workspace with that plot; with `screenshot`, fill it first.
@@ -77,6 +83,7 @@ impl ViewerOptions {
             settings.structure.clone_from(structure);
         }
         settings.mode = self.mode.unwrap_or(settings.mode);
+        settings.heat_rays = self.heat_rays.unwrap_or(settings.heat_rays);
         settings.max_samples = self.samples.unwrap_or(settings.max_samples);
         settings.theme = self.theme.unwrap_or(settings.theme);
         if self.check {
@@ -99,6 +106,7 @@ impl ViewerOptions {
             (overlay.depth, overlay.from_depth, overlay.boxes) = (depth, depth, true);
         }
         overlay.leaves_only |= self.leaves_only;
+        overlay.color = self.color_boxes.unwrap_or(overlay.color);
         if self.no_overlay {
             (overlay.boxes, overlay.planes) = (false, false);
         }

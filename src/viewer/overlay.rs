@@ -11,6 +11,7 @@ use crate::accel::Accel;
 use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Shape, Split, bounds_in_scene, walk_below};
 use crate::accel::outline::{Outline, Row};
 use crate::geometry::{Aabb, Axis, HalfSpace};
+use crate::lab::Visits;
 use crate::task::{Cancel, Cancelled};
 
 /// What an overlay is made for.
@@ -28,6 +29,8 @@ pub struct Wanted {
     pub top: Option<(Cell, u32)>,
     /// The rows of cells are known, for colours that need them.
     pub numbered: bool,
+    /// Which count of visits colours stand for, if they do and there is one.
+    pub counted: Option<u64>,
 }
 
 /// An overlay, and how much of the structure it shows.
@@ -97,6 +100,8 @@ fn scatter(node: u32) -> u32 {
 
 struct Collector<'a> {
     wanted: &'a Wanted,
+    /// How often rays enter cells, if it is known.
+    visits: Option<&'a Visits>,
     ruler: Ruler,
     /// Cells along each axis, of a grid.
     resolution: Option<[u32; 3]>,
@@ -110,10 +115,15 @@ struct Collector<'a> {
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
-pub fn collect(accel: &dyn Accel, outline: Option<&Outline>, wanted: &Wanted, cancel: &Cancel) -> Result<Collected, Cancelled> {
+pub fn collect(
+    accel: &dyn Accel,
+    (outline, visits): (Option<&Outline>, Option<&Visits>),
+    wanted: &Wanted,
+    cancel: &Cancel,
+) -> Result<Collected, Cancelled> {
     let resolution = if let Layout::Flat { resolution, .. } = accel.layout() { Some(resolution) } else { None };
     let ruler = Ruler::new(&wanted.view, wanted.size_px);
-    let mut collector = Collector { wanted, ruler, resolution, found: Vec::new(), total: 0, more: false };
+    let mut collector = Collector { wanted, visits, ruler, resolution, found: Vec::new(), total: 0, more: false };
     let mut looked = 0u64;
     let mut stopped = Ok(());
     let mut visit = |cell: &Cell, row: Option<Row>| {
@@ -149,7 +159,7 @@ impl Collector<'_> {
         if self.wants_box(cell) {
             self.total += 1;
             if px >= LEAST_PX {
-                let value = value(s.color, cell, row);
+                let value = self.value(cell, row);
                 self.keep(Found { value, ..Found::new(cell, px) });
             }
         }
@@ -160,7 +170,7 @@ impl Collector<'_> {
             self.total += 1;
             let plane = plane_in(cell.shape.bounds(), axis, pos);
             if px >= LEAST_PX && !self.is_cut_away(&bounds_in_scene(accel, &Cell { shape: Shape::Box(plane), ..*cell })) {
-                let (bounds, value) = (plane, value(s.color, cell, row));
+                let (bounds, value) = (plane, self.value(cell, row));
                 self.keep(Found { bounds, value, plane: true, ..Found::new(cell, px) });
             }
         }
@@ -209,6 +219,18 @@ impl Collector<'_> {
             }
     }
 
+    /// What the colour of a cell stands for; no number where it is not known.
+    fn value(&self, cell: &Cell, row: Option<Row>) -> f32 {
+        let of_row = |of: fn(Row) -> f64| row.map_or(f32::NAN, |row| of(row) as f32);
+        match self.wanted.settings.color {
+            BoxColor::Depth => cell.depth as f32,
+            BoxColor::Triangles => of_row(|row| row.references.into()),
+            BoxColor::Cost => of_row(|row| row.share),
+            BoxColor::Overlap => of_row(|row| row.overlap.unwrap_or(f64::NAN)),
+            BoxColor::Visits => self.visits.map_or(f32::NAN, |visits| visits.a_ray(cell.id) as f32),
+        }
+    }
+
     /// Cells of a grid are numbered from 1, x fastest.
     fn in_slice(&self, cell: &Cell) -> bool {
         let (s, Some([x, y, _])) = (&self.wanted.settings, self.resolution) else { return true };
@@ -240,17 +262,6 @@ impl Collector<'_> {
         overlay.planes.extend(self.wanted.view.section.map(|section| section_in(&section, accel.geometry().space().bounds())));
         let range = (!by_depth && low <= high).then_some([low, high]);
         Collected { overlay, shown: self.found.len(), total: self.total, more: self.more, range }
-    }
-}
-
-/// What the colour of a cell stands for; no number where it is not known.
-fn value(color: BoxColor, cell: &Cell, row: Option<Row>) -> f32 {
-    let of_row = |of: fn(Row) -> f64| row.map_or(f32::NAN, |row| of(row) as f32);
-    match color {
-        BoxColor::Depth => cell.depth as f32,
-        BoxColor::Triangles => of_row(|row| row.references.into()),
-        BoxColor::Cost => of_row(|row| row.share),
-        BoxColor::Overlap => of_row(|row| row.overlap.unwrap_or(f64::NAN)),
     }
 }
 
@@ -294,8 +305,8 @@ mod tests {
         let settings = OverlaySettings { boxes: true, planes: false, empty_cells: true, slice: 0, ..OverlaySettings::default() };
         let camera = Camera { eye: Vec3::new(0.3, 0.4, 1.0), target: Vec3::ZERO, up: Vec3::Y, projection };
         let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
-        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false };
-        (collect(accel.as_ref(), None, &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
+        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false, counted: None };
+        (collect(accel.as_ref(), (None, None), &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
     }
 
     #[test]

@@ -34,6 +34,8 @@ pub struct Screenshot {
     follow: Vec<Command>,
     /// The view is still to be compared with brute force.
     brute: bool,
+    /// What shows the times of tiles.
+    tiles: Vec<Command>,
     rehearsal: Option<Rehearsal>,
     endurance: Option<Endurance>,
     /// What the long run found, in words.
@@ -79,6 +81,7 @@ impl Screenshot {
             try_plane: options.try_plane,
             follow: follow(options),
             brute: options.brute,
+            tiles: if options.time_tiles { vec![Command::ShowTiles(true), Command::TimeTiles] } else { Vec::new() },
             rehearsal: options.pace.then(Rehearsal::default),
             endurance: options.endure.then(Endurance::default),
             endured: String::new(),
@@ -122,6 +125,7 @@ impl Screenshot {
                 }
             }
             Stage::Settling if settled && std::mem::take(&mut self.brute) => commands.push(Command::CheckByBrute(None)),
+            Stage::Settling if settled && !self.tiles.is_empty() => commands.push(self.tiles.remove(0)),
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
                 self.stage = Stage::Measuring;

@@ -6,7 +6,7 @@ use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
 use crate::render::sampler::SamplerKind;
-use crate::render::{Mode, Tone};
+use crate::render::{HeatRays, Mode, Tone};
 use crate::scene::Section;
 
 /// Everything that is saved.
@@ -23,6 +23,8 @@ pub struct Settings {
     pub test: TestKind,
     /// What is shown.
     pub mode: Mode,
+    /// Whose work heat maps show.
+    pub heat_rays: HeatRays,
     /// Samples after which to rest.
     pub max_samples: u32,
     /// How light becomes colour.
@@ -60,6 +62,7 @@ impl Default for Settings {
             params: BTreeMap::new(),
             test: TestKind::default(),
             mode: Mode::default(),
+            heat_rays: HeatRays::default(),
             max_samples: 4096,
             tone: Tone::default(),
             sampler: SamplerKind::default(),
@@ -125,11 +128,24 @@ pub enum BoxColor {
     Cost,
     /// How often a line that meets the node meets the overlap of its children.
     Overlap,
+    /// How often a camera ray of the present view enters the cell.
+    Visits,
 }
 
 impl BoxColor {
     /// All, in the order of menus.
-    pub const ALL: [Self; 4] = [Self::Depth, Self::Triangles, Self::Cost, Self::Overlap];
+    pub const ALL: [Self; 5] = [Self::Depth, Self::Triangles, Self::Cost, Self::Overlap, Self::Visits];
+
+    /// The one of a name on the command line.
+    pub fn of_id(id: &str) -> Option<Self> {
+        let ids = ["depth", "triangles", "share", "overlap", "visits"];
+        ids.into_iter().zip(Self::ALL).find(|(known, _)| *known == id).map(|(_, color)| color)
+    }
+
+    /// Whether it is told by the list of cells alone.
+    pub const fn needs_rows(self) -> bool {
+        matches!(self, Self::Triangles | Self::Cost | Self::Overlap)
+    }
 
     /// The name in menus.
     pub const fn label(self) -> &'static str {
@@ -138,6 +154,7 @@ impl BoxColor {
             Self::Triangles => "By triangles",
             Self::Cost => "By SAH share",
             Self::Overlap => "By overlap",
+            Self::Visits => "By visits",
         }
     }
 
@@ -148,6 +165,7 @@ impl BoxColor {
             Self::Triangles => "Triangles",
             Self::Cost => "SAH share",
             Self::Overlap => "Overlap",
+            Self::Visits => "Visits a ray",
         }
     }
 }

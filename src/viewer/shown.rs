@@ -24,11 +24,17 @@ pub fn picture(
         Some(reference) => differences(light, reference),
     };
     let rgba = if reference.is_none() { opaque(&rgba) } else { rgba };
+    Picture { range, ..in_place_of(present, [width, height], rgba) }
+}
+
+/// Bytes as a picture that stands in place of the present one; its depths are those of that.
+pub fn in_place_of(present: &Picture, [width, height]: [u32; 2], rgba: Vec<u8>) -> Picture {
     let generation = GENERATION.fetch_sub(1, Ordering::Relaxed);
     // While the present picture is coarse it has no depth for each pixel.
     let whole = (present.width, present.height) == (width, height);
-    let depth = if whole { Arc::clone(&present.depth) } else { Arc::new(vec![f32::INFINITY; light.len()]) };
-    Picture { generation, width, height, rgba, range, depth, shots: Vec::new(), ..present.clone() }
+    let depth = if whole { Arc::clone(&present.depth) } else { Arc::new(vec![f32::INFINITY; rgba.len() / 4]) };
+    let Picture { request, camera, range, progress, .. } = *present;
+    Picture { generation, request, camera, width, height, rgba, depth, range, amounts: None, progress, shots: Vec::new() }
 }
 
 /// Brightness less the reference's, blue where it is too dark and orange where it is too bright.

@@ -9,7 +9,7 @@ mod ramp;
 pub use lines::{DASH_PT, LineStyle, PLANE_FILL, PLANE_FILL_HIDDEN};
 pub use marker::Marker;
 pub use palette::{Mark, Palette};
-pub use ramp::{amount_color, depth_color, depth_position, difference, viridis};
+pub use ramp::{amount_color, depth_color, depth_position, difference, heat_color, viridis};
 
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme, Vec2, Visuals, style};
 
@@ -81,6 +81,10 @@ pub const CLICK_SLACK: f32 = 4.0;
 pub const STRIP: f32 = 40.0;
 /// The width of a slider where many things stand in a row.
 pub const SHORT_SLIDER: f32 = 12.0 * GRID;
+/// The height of the histogram of a heat map.
+pub const HISTOGRAM: f32 = 4.0 * ROW;
+/// Half the width of what the ends of its colours are dragged by, and its height over the bars.
+pub const HANDLE: f32 = 6.0;
 /// The size of a structure's mark.
 pub const MARK: f32 = 9.0;
 /// How often progress bars move.

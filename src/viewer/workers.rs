@@ -28,7 +28,7 @@ use crate::lab::stability::{self, CaseRow, cases};
 use crate::lab::tradeoffs::{TradeoffRow, Tradeoffs, Variant};
 use crate::lab::{
     self, CheckError, Checked, Contestant, Costs, Enough, FitOptions, ImageErrors, MeasureOptions, ModelCheck, Quality,
-    QualityOptions, RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure, measure_with_raster, sah_curves,
+    QualityOptions, RasterRow, RayKind, RaySet, SahCurves, Timing, Visits, fit_costs, measure, measure_with_raster, sah_curves,
 };
 use crate::render::{self, Looks, Picture, Shot, Tone};
 use crate::scene::texture::Detail;
@@ -191,10 +191,12 @@ pub type Collecting = Job<Result<Collected, Cancelled>>;
 pub fn collect(
     shared: &Shared,
     accel: Arc<dyn Accel>,
-    outline: Option<Arc<Outline>>,
+    (outline, visits): (Option<Arc<Outline>>, Option<Arc<Visits>>),
     wanted: Wanted,
 ) -> std::io::Result<Collecting> {
-    Job::spawn("overlay", shared.waker(), move |cancel, _| overlay::collect(accel.as_ref(), outline.as_deref(), &wanted, cancel))
+    Job::spawn("overlay", shared.waker(), move |cancel, _| {
+        overlay::collect(accel.as_ref(), (outline.as_deref(), visits.as_deref()), &wanted, cancel)
+    })
 }
 
 /// What was clicked, on its way.

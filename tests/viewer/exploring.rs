@@ -190,6 +190,31 @@ fn boxes_are_of_the_selected_cell_alone_and_coloured_by_what_they_cost() {
 }
 
 #[test]
+fn boxes_are_coloured_by_the_visits_of_the_present_view() {
+    let mut w = open("builtin:teapot?triangles=1000");
+    w.choose(BoxColor::Depth.label(), BoxColor::Visits.label());
+    w.settle();
+    let range = |w: &Window| w.state().collected.range.expect("counted");
+    let [low, high] = range(&w);
+    assert!(low >= 0.0 && low < high && high <= 1.0, "a ray enters a node once: {low} {high}");
+    assert!(w.says("Visits a ray: "));
+    w.button(Rank::Cost.name());
+    w.settle();
+    let cell = w.state().picked.as_ref().and_then(|picked| picked.selected()).expect("selected").id;
+    assert!(w.state().visits().is_some_and(|visits| visits.a_ray(cell) > 0.0) && w.says("Visits a ray"));
+    // From elsewhere they are others.
+    w.drag(w.viewport().center(), vec2(160.0, 90.0), PointerButton::Primary, Modifiers::NONE);
+    w.settle();
+    assert_ne!(range(&w), [low, high]);
+    // The list of cells is not needed for it, nor a tree.
+    w.button("View workspace");
+    w.button("Grid");
+    w.settle();
+    let [low, high] = range(&w);
+    assert!(low < high && high <= 1.0, "{low} {high}");
+}
+
+#[test]
 fn a_grid_of_many_cells_is_one_list() {
     let mut w = open("builtin:soup?triangles=20000");
     w.button("Grid");

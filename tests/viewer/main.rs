@@ -15,6 +15,7 @@ mod errors;
 mod exploring;
 mod following;
 mod hands;
+mod heat;
 mod layout;
 mod measuring;
 mod modes;

@@ -208,6 +208,7 @@ impl<T: TriTest> Structure for Bsp<T> {
                     if early <= exit {
                         stack[top] = Aside { node: far, entry: entry.max(early), exit };
                         top += 1;
+                        probe.waiting(top);
                         exit = exit.min(late);
                     }
                     current = near;

@@ -182,6 +182,7 @@ impl<T: TriTest, const ORDERED: bool, const EARLY_OUT: bool> Structure for Bvh<T
                     let (near, far) = if swap { (right, (left, at_left)) } else { (left, (right, at_right)) };
                     stack[top] = far;
                     top += 1;
+                    probe.waiting(top);
                     current = near;
                     continue;
                 }

@@ -54,6 +54,7 @@ impl<P: Probe, A: Ask<P>> Walk<'_, P, A> {
     /// Visits the entries whose boxes the ray meets, near ones first.
     fn run(mut self) -> Result<Option<Hit>, Cancelled> {
         let top = &self.of.top;
+        self.probe.waiting(0);
         if top.nodes.is_empty() {
             for entry in &top.entries {
                 if self.visit(*entry)? {
@@ -74,6 +75,7 @@ impl<P: Probe, A: Ask<P>> Walk<'_, P, A> {
             }
             self.probe.node();
             self.probe.at(at);
+            self.probe.waiting(open);
             let node = &top.nodes[at as usize];
             let Some(left) = node.left() else {
                 for entry in &top.entries[node.range()] {

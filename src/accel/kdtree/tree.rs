@@ -176,6 +176,7 @@ impl<T: TriTest, const MAILBOX: bool> Structure for KdTree<T, MAILBOX> {
                     if early <= exit {
                         stack[top] = Aside { node: far, entry: if early > entry { early } else { entry }, exit };
                         top += 1;
+                        probe.waiting(top);
                         exit = if late < exit { late } else { exit };
                     } else {
                         probe.pruned(far, Prune::Missed);

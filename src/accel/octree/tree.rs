@@ -94,6 +94,7 @@ impl<T: TriTest> Structure for Octree<T> {
             } else {
                 frames[top] = Frame::new(node, &visit, &along);
                 top += 1;
+                probe.waiting(top);
             }
             visit = loop {
                 if top == 0 {

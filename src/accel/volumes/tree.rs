@@ -99,6 +99,7 @@ impl<T: TriTest, V: Volume> Structure for Tree<T, V> {
                         let (near, far) = if swap { (right, (left, at_left)) } else { (left, (right, at_right)) };
                         stack[top] = far;
                         top += 1;
+                        probe.waiting(top);
                         current = near;
                         continue;
                     }

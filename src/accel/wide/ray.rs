@@ -62,6 +62,8 @@ pub fn walk<S: Simd, T: TriTest, B: Pack, Q: Query, P: Probe>(
                 (child, last) = open.pop(last);
             } else {
                 (child, last) = open.keep_others(s, last, node.children(), &met, order);
+                // What lies below them all is not counted.
+                probe.waiting(last as usize);
             }
             continue;
         }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use eframe::egui::{Align2, Color32, Pos2, Rect, TextStyle, Ui, pos2, vec2};
+use eframe::egui::{Align2, Color32, Pos2, Rect, Stroke, TextStyle, Ui, pos2, vec2};
 
 use crate::accel::cell::Layout;
 use crate::render::Range;
@@ -11,6 +11,7 @@ use crate::viewer::format;
 use crate::viewer::settings::{BoxColor, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
+use glam::Vec2;
 
 /// A line over the picture.
 struct Caption {
@@ -63,7 +64,10 @@ fn showing(state: &State) -> String {
     }
     let beyond = if c.more { " or more" } else { "" };
     let color = state.settings.overlay.color;
-    let write = |x: f32| if color == BoxColor::Triangles { format::number(x.into()) } else { format::share(x.into()) };
+    let write = |x: f32| match color {
+        BoxColor::Triangles | BoxColor::Visits => format::number(x.into()),
+        BoxColor::Depth | BoxColor::Cost | BoxColor::Overlap => format::share(x.into()),
+    };
     let colors = c.range.map(|range| {
         let [low, high] = range.map(write);
         format!(", {}: {low} dark to {high} bright", color.name())
@@ -92,8 +96,12 @@ fn heat(state: &State) -> Option<(String, Range, Colors)> {
         let range = state.on_screen()?.range;
         return Some(("Brightness less the reference's".to_owned(), range, |t| difference(2.0 * t - 1.0)));
     }
+    let each = state.settings.heat_rays.each();
+    if state.shows_tiles() {
+        return Some((format!("Nanoseconds {each}, by tile"), state.on_screen()?.range, viridis));
+    }
     let range = state.picture.as_ref().filter(|_| state.settings.mode.is_heat())?.range;
-    Some((format!("{} a ray", state.settings.mode.label()), range, viridis))
+    Some((format!("{} {each}", state.settings.mode.label()), range, viridis))
 }
 
 /// What is to be seen, in sentences.
@@ -116,11 +124,12 @@ pub fn describe(state: &State) -> String {
         let (min, max) = (format::number(range.min.into()), format::number(range.max.into()));
         format!("Colours show {name}, from {min} to {max}")
     }));
+    sentences.extend(state.clicked_amount().map(|amount| format!("{} at the clicked pixel", format::number(amount.into()))));
     sentences.iter().map(|s| s.trim_end_matches(['.', '…'])).map(|s| format!("{s}.")).collect::<Vec<_>>().join(" ")
 }
 
-/// Writes them.
-pub fn show(ui: &Ui, rect: Rect, state: &State) {
+/// Writes them. `pointer` is where it is over the view, if it is.
+pub fn show(ui: &Ui, rect: Rect, pointer: Option<Pos2>, state: &State) {
     let inner = rect.shrink(theme::GUTTER);
     for Caption { at, row, text } in captions(state) {
         let above = vec2(0.0, f32::from(row) * (theme::ROW + theme::GRID));
@@ -135,8 +144,16 @@ pub fn show(ui: &Ui, rect: Rect, state: &State) {
         ui.ctx().request_repaint_after(left);
     }
     if let Some(heat) = heat(state).filter(|_| state.model.is_some()) {
-        legend(ui, inner, heat);
+        let under = pointer.and_then(|at| amount_under(rect, at, state)).map(|amount| ("here", amount));
+        let told = under.or_else(|| state.clicked_amount().map(|amount| ("clicked", amount)));
+        legend(ui, inner, heat, told);
     }
+}
+
+/// The amount under the pointer.
+fn amount_under(rect: Rect, at: Pos2, state: &State) -> Option<f32> {
+    let within = (at - rect.min) / rect.size();
+    state.picture_at(within.x)?.amount_at(Vec2::new(within.x * 2.0 - 1.0, 1.0 - within.y * 2.0))
 }
 
 /// Text on a plate, so that it can be read over any picture.
@@ -148,8 +165,8 @@ pub fn plate(ui: &Ui, at: Pos2, align: Align2, text: String) {
     ui.painter().galley(plate.center() - galley.size() * 0.5, galley, palette.text);
 }
 
-/// The colours of a heat map and what they stand for.
-fn legend(ui: &Ui, inner: Rect, (name, range, color): (String, Range, Colors)) {
+/// The colours of a heat map and what they stand for, and among them an amount that is told with its name.
+fn legend(ui: &Ui, inner: Rect, (name, range, color): (String, Range, Colors), told: Option<(&str, f32)>) {
     const STEPS: u32 = 48;
     let width = 48.0 * theme::GRID;
     let palette = Palette::in_ui(ui);
@@ -169,4 +186,11 @@ fn legend(ui: &Ui, inner: Rect, (name, range, color): (String, Range, Colors)) {
     text(bar.left_top() - vec2(0.0, theme::GRID), Align2::LEFT_BOTTOM, name);
     text(bar.left_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::LEFT_TOP, format::number(range.min.into()));
     text(bar.right_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::RIGHT_TOP, format::number(range.max.into()));
+    if let Some((place, amount)) = told {
+        let at = bar.left() + bar.width() * ((amount - range.min) / (range.max - range.min)).clamp(0.0, 1.0);
+        ui.painter().vline(at, bar.y_range(), Stroke::new(theme::RAY_HALO, palette.background));
+        ui.painter().vline(at, bar.y_range(), Stroke::new(1.0, palette.text));
+        let middle = bar.center_bottom() + vec2(0.0, theme::GRID * 0.5);
+        text(middle, Align2::CENTER_TOP, format!("{place}: {}", format::number(amount.into())));
+    }
 }

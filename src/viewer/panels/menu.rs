@@ -79,6 +79,7 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.error.is_some(), Command::Dismiss),
         (state.needing.is_some(), Command::CancelNeeds),
         (state.causes.running.is_some(), Command::CancelCauses),
+        (state.tiles.running.is_some(), Command::CancelTiles),
         (state.rays.following.is_some(), Command::CancelFollow),
         (state.brute.marking, Command::MarkRectangle(false)),
         (state.brute.running.is_some(), Command::CancelBrute),

@@ -10,6 +10,7 @@ pub mod decision;
 pub mod error_side;
 pub mod errors;
 pub mod findings;
+pub mod heat;
 pub mod help;
 pub mod long_list;
 pub mod marking;

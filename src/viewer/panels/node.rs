@@ -38,6 +38,10 @@ fn figures(ui: &mut Ui, state: &State, cell: &Cell) {
         CellKind::Leaf { .. } => "leaf",
     };
     fact(ui, "Cell", format!("{kind} {} at depth {}", cell.id.node, cell.depth), "Its kind, its number and its depth.");
+    if let Some(visits) = state.visits() {
+        let help = "How often a camera ray of the view enters it, from a sample of them.";
+        fact(ui, "Visits a ray", format::number(visits.a_ray(cell.id)), help);
+    }
     let row = state.tree.outline.as_ref().zip(state.tree.selected).map(|(outline, at)| outline.row(at));
     // The cell of a row that was just selected may be on its way.
     let row = row.filter(|row| row.id == cell.id);

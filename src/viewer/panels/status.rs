@@ -49,6 +49,9 @@ fn doing(state: &State) -> Option<String> {
         let now = building.job.progress.snapshot();
         return Some(format!("Building {} beside{}", building.key.entry.name, share(now.fraction)));
     }
+    if let Some((_, job)) = &state.tiles.running {
+        return Some(format!("Timing the tiles{}", share(job.progress.snapshot().fraction)));
+    }
     if let Some(job) = &state.rays.following {
         return Some(format!("Following the ray{}", share(job.progress.snapshot().fraction)));
     }

@@ -1,28 +1,31 @@
 //! The row above the viewport: structure, what is shown, depth.
 
-use eframe::egui::{Button, ComboBox, DragValue, Slider, Ui};
+use eframe::egui::{Button, ComboBox, DragValue, RichText, Slider, Ui};
 
-use super::Commands;
+use super::{Commands, heat};
 use crate::accel::cell::Layout;
 use crate::accel::registry::{self, Entry};
 use crate::geometry::Axis;
 use crate::render::sampler::SamplerKind;
-use crate::render::{Curve, Mode};
+use crate::render::{Curve, HeatRays, Mode};
 use crate::viewer::command::Command;
 use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
-use crate::viewer::theme;
+use crate::viewer::theme::{self, Palette};
 
 /// Draws the row.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.spacing_mut().slider_width = theme::SHORT_SLIDER;
     let look = |ui: &mut Ui, commands: &mut Commands| {
         mode(ui, state, commands);
+        if heat::is_shown(state) {
+            heat_rays(ui, state, commands);
+        }
         if state.settings.mode == Mode::Path {
             light(ui, state, commands);
         }
         depth(ui, state, commands);
-        if state.settings.workspace == Workspace::Compare && state.settings.mode != Mode::Path {
+        if state.settings.workspace == Workspace::Compare && state.settings.mode != Mode::Path && !state.tiles.shown {
             beside(ui, state, commands);
         }
     };
@@ -50,15 +53,40 @@ fn structure(ui: &mut Ui, state: &State, commands: &mut Commands) {
 }
 
 fn mode(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    let chosen = state.settings.mode;
-    let combo = ComboBox::from_id_salt("mode").height(theme::LONG_MENU).selected_text(chosen.label()).show_ui(ui, |ui| {
-        for mode in Mode::ALL {
-            if ui.selectable_label(mode == chosen, mode.label()).on_hover_text(mode.help()).clicked() {
+    let (chosen, tiles) = (state.settings.mode, state.tiles.shown);
+    let (text, help) = if tiles { (TILES, TILES_HELP) } else { (chosen.label(), chosen.help()) };
+    let combo = ComboBox::from_id_salt("mode").height(theme::LONG_MENU).selected_text(text).show_ui(ui, |ui| {
+        for mode in Mode::ALL.into_iter().filter(|mode| state.offers(*mode)) {
+            let this = mode == chosen && !tiles;
+            if ui.selectable_label(this, mode.label()).on_hover_text(mode.help()).clicked() {
                 commands.push(Command::Mode(mode));
             }
         }
+        if ui.selectable_label(tiles, TILES).on_hover_text(TILES_HELP).clicked() {
+            commands.push(Command::ShowTiles(true));
+        }
+        if let Some(why) = state.why_no_stack() {
+            ui.label(RichText::new(why).small().color(Palette::in_ui(ui).dim));
+        }
     });
-    combo.response.accessible_name("Picture").on_hover_text(chosen.help());
+    combo.response.accessible_name("Picture").on_hover_text(help);
+}
+
+/// What is timed in place of a picture.
+pub const TILES: &str = "Nanoseconds by tile";
+const TILES_HELP: &str = "How long the rays of each tile of 8 by 8 pixels take, measured on one thread once it is asked for.";
+
+/// Whose work a heat map shows.
+fn heat_rays(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let chosen = state.settings.heat_rays;
+    let combo = ComboBox::from_id_salt("heat rays").selected_text(chosen.label()).show_ui(ui, |ui| {
+        for rays in HeatRays::ALL {
+            if ui.selectable_label(rays == chosen, rays.label()).on_hover_text(rays.help()).clicked() {
+                commands.push(Command::HeatRays(rays));
+            }
+        }
+    });
+    combo.response.accessible_name("Rays of the heat map").on_hover_text(chosen.help());
 }
 
 /// How light becomes colour, and the numbers that paths are made of.

@@ -40,7 +40,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         let stroke = egui::Stroke::new(1.0, Palette::in_ui(ui).accent_text);
         ui.painter().rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Inside);
     }
-    captions::show(ui, rect, state);
+    captions::show(ui, rect, response.hover_pos(), state);
     split::show(ui, rect, state, commands);
     if matches!(state.settings.workspace, Workspace::View | Workspace::Ray) {
         marking::show(ui, rect, state);

@@ -33,7 +33,7 @@ impl State {
     }
 
     fn beside_entry(&self) -> Option<&'static Entry> {
-        let offered = self.settings.workspace == Workspace::Compare && self.settings.mode != Mode::Path;
+        let offered = self.settings.workspace == Workspace::Compare && self.settings.mode != Mode::Path && !self.tiles.shown;
         self.beside.chosen.filter(|_| offered)
     }
 
@@ -47,6 +47,7 @@ impl State {
     pub(super) fn begin_measuring(&mut self) -> Pauses {
         (self.beside.building, self.rays.following) = (None, None);
         self.brute.clear();
+        self.visiting.stop();
         if self.tree.outlining.take().is_some() {
             self.tree.of = None; // listed anew afterwards
         }
@@ -80,7 +81,7 @@ impl State {
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&built.accel));
         let sampling = Sampling { kind: wanted.sampler, seed: 0 };
         let whole = render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks));
-        let job = render::Job { sampling, section: wanted.section, ..whole };
+        let job = render::Job { sampling, heat_rays: wanted.heat_rays, section: wanted.section, ..whole };
         let ([width, height], max_samples, tone) = (wanted.size_px, wanted.max_samples, wanted.tone);
         renderer.request(Request { job, width, height, max_samples, range, tone, keep: None });
         self.requested_beside = Some(wanted);

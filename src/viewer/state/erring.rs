@@ -9,10 +9,12 @@ use crate::viewer::errors::{Chosen, Errors, View};
 use crate::viewer::workers;
 
 impl State {
-    /// The picture that is on the screen: the present one, or in the Compare workspace that of a point of a curve.
+    /// The picture that is on the screen: the present one, that of tiles' times, or in the Compare workspace that of a point of
+    /// a curve.
     pub fn on_screen(&self) -> Option<&Arc<Picture>> {
         let shows = self.settings.workspace.shows_errors() && self.settings.mode == Mode::Path;
-        self.errors.picture.as_ref().filter(|_| shows).or(self.picture.as_ref())
+        let tiles = self.tiles.picture.as_ref().filter(|_| self.shows_tiles()).map(|(_, picture)| picture);
+        self.errors.picture.as_ref().filter(|_| shows).or(tiles).or(self.picture.as_ref())
     }
 
     /// Whether that is the picture of a point of a curve.

@@ -12,7 +12,7 @@ use crate::viewer::gpu::{BoxInstance, Overlay};
 use crate::viewer::history::{Choices, Kind};
 use crate::viewer::overlay::{placed, plane_in};
 use crate::viewer::pick::Picked;
-use crate::viewer::settings::{BoxColor, Workspace};
+use crate::viewer::settings::Workspace;
 use crate::viewer::{theme, workers};
 
 impl State {
@@ -49,7 +49,7 @@ impl State {
     /// Whether somebody looks at the list of cells, or boxes are drawn by what it says.
     fn needs_outline(&self) -> bool {
         let overlay = &self.settings.overlay;
-        let boxes = overlay.boxes && (overlay.subtree_only || overlay.color != BoxColor::Depth);
+        let boxes = overlay.boxes && (overlay.subtree_only || overlay.color.needs_rows());
         self.settings.workspace == Workspace::Structure || boxes
     }
 

@@ -63,6 +63,9 @@ impl State {
         (self.needs, self.needing) = (None, None);
         self.timings = Timings::default();
         (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
+        self.tiles.clear();
+        self.clicked = None;
+        self.shared.give_back(std::mem::take(&mut self.visiting));
         self.checks.opened();
         let ray = self.rays.asked.filter(|_| reopened.is_some());
         let section = self.first_section.take();

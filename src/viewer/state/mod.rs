@@ -11,15 +11,20 @@ mod erring;
 mod exploring;
 mod finished;
 mod following;
+mod heating;
 mod keeping;
 mod refresh;
 mod saving;
 mod sectioning;
+mod tiling;
 mod trading;
+mod visiting;
 
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
+pub use heating::LEAST_SPAN;
 use saving::Saving;
+use visiting::Visiting;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -42,6 +47,7 @@ use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
 use super::rays::Rays;
 use super::settings::{Settings, Workspace};
+use super::tiles::Tiles;
 use super::timings::Timings;
 use super::tradeoffs::Tradeoffs;
 use super::tree::Tree;
@@ -55,7 +61,7 @@ use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
 use crate::render::sampler::SamplerKind;
-use crate::render::{self, Mode, Picture, Range, Renderer, Tone};
+use crate::render::{self, HeatRays, Mode, Picture, Range, Renderer, Tone};
 use crate::scene::texture::Detail;
 use crate::scene::{Camera, CameraSpec, Section};
 use crate::task::Pool;
@@ -83,6 +89,10 @@ pub struct State {
     pub first_section: Option<Section>,
     /// For amounts: fixed by the user, or from the picture.
     pub range: Option<Range>,
+    /// Where the picture was last clicked, and from where it was seen.
+    clicked: Option<(Camera, Vec2)>,
+    /// Nanoseconds by tiles of the picture.
+    pub tiles: Tiles,
     /// The newest picture of the open model.
     pub picture: Option<Arc<Picture>>,
     /// What is drawn over it.
@@ -177,6 +187,8 @@ pub struct State {
     textures: Option<Detail>,
     collecting: Option<(Wanted, Key, Collecting)>,
     collected_for: Option<(Wanted, Key)>,
+    /// How often rays enter cells, for their colours.
+    visiting: Visiting,
     /// The boxes are those of the present view, structure and settings.
     overlay_is_current: bool,
     dialog: Box<dyn FileDialog>,
@@ -206,6 +218,8 @@ struct Asked {
     /// What of the world is left.
     section: Option<HalfSpace>,
     mode: Mode,
+    /// Whose work is shown, of heat maps.
+    heat_rays: HeatRays,
     range: Option<Range>,
     size_px: [u32; 2],
     max_samples: u32,
@@ -250,6 +264,8 @@ impl State {
             first_camera: None,
             first_section: None,
             range: None,
+            clicked: None,
+            tiles: Tiles::default(),
             picture: None,
             overlay: None,
             collected: Collected::default(),
@@ -299,6 +315,7 @@ impl State {
             textures: None,
             collecting: None,
             collected_for: None,
+            visiting: Visiting::default(),
             overlay_is_current: false,
             dialog,
             asked_for_file: None,
@@ -328,6 +345,7 @@ impl State {
             || self.causes.running.is_some()
             || self.errors.making.is_some()
             || self.tradeoffs.running.is_some()
+            || self.tiles.running.is_some()
     }
 
     /// Whether the lab runs or the model is checked, which would disturb a measurement.
@@ -358,6 +376,8 @@ impl State {
             || self.is_exploring()
             || self.rays.following.is_some()
             || self.brute.running.is_some()
+            || self.is_tiling()
+            || self.awaits_visits()
             || self.saving.is_busy()
             || self.awaited.is_some()
             || drawing
@@ -388,11 +408,12 @@ impl State {
                 self.settings.test = test;
                 self.choose();
             }
-            Command::Mode(mode) => {
-                self.settings.mode = mode;
-                self.range = None;
-            }
-            Command::HeatRange(range) => self.range = range,
+            Command::Mode(mode) => self.show_mode(mode),
+            Command::HeatRays(rays) => self.show_heat_of(rays),
+            Command::ShowTiles(shown) => self.show_tiles(shown),
+            Command::TimeTiles => self.time_tiles(),
+            Command::CancelTiles => self.tiles.running = None,
+            Command::HeatRange(range) => self.set_heat_range(range),
             Command::Overlay(overlay) => {
                 let depths = (overlay.from_depth, overlay.depth);
                 if depths != (self.settings.overlay.from_depth, self.settings.overlay.depth) {
@@ -503,6 +524,7 @@ impl State {
     fn pick(&mut self, at: Vec2) {
         let ray = self.ray_at(at);
         (self.tree.selecting, self.tree.restoring) = (None, false);
+        self.note_click(at);
         if self.settings.workspace == Workspace::Ray {
             self.follow(ray);
         }
@@ -620,6 +642,7 @@ impl State {
         self.tree.clear();
         self.causes = Causes::default();
         self.rays.clear();
+        self.shared.give_back(std::mem::take(&mut self.visiting));
         self.shown = Some(built);
         if self.settings.workspace == Workspace::Ray {
             self.follow_again();
@@ -690,9 +713,11 @@ impl State {
         self.advance_beside();
         self.advance_errors();
         self.advance_tradeoffs();
+        self.advance_tiles();
         self.advance_statistics();
         self.advance_prediction();
         self.advance_textures();
+        self.advance_visits();
         self.refresh_overlay();
     }
 

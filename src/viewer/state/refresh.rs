@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::{Answer, Asked, CHANGE_SHOWN, State};
 use crate::job::Outcome;
 use crate::render::sampler::Sampling;
-use crate::render::{self, Picture, Request};
+use crate::render::{HeatRays, Picture, Request, self};
 use crate::viewer::gpu::Overlay;
 use crate::viewer::overlay::Wanted;
 use crate::viewer::pick::Picked;
@@ -38,6 +38,8 @@ impl State {
             camera: self.camera,
             section: self.section(),
             mode,
+            // Of other pictures it changes nothing.
+            heat_rays: if mode.is_heat() { self.settings.heat_rays } else { HeatRays::default() },
             range: self.range,
             size_px: self.size_px,
             max_samples,
@@ -50,7 +52,7 @@ impl State {
             let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
             let sampling = Sampling { kind: asked.sampler, seed: 0 };
             let whole = render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks));
-            let job = render::Job { sampling, section: asked.section, ..whole };
+            let job = render::Job { sampling, heat_rays: asked.heat_rays, section: asked.section, ..whole };
             let keep = asked.keeps.then(|| self.shared.budget.clone());
             let request = Request { job, width, height, max_samples, range: self.range, tone: asked.tone, keep };
             let number = self.renderer.request(request);
@@ -117,7 +119,8 @@ impl State {
         let (Some(shown), Some(view)) = (&self.shown, self.view()) else { return };
         let settings = self.settings.overlay;
         let selected = self.picked.as_ref().and_then(Picked::selected).copied();
-        let (needs_rows, outline) = (settings.subtree_only || settings.color != BoxColor::Depth, self.tree.outline.clone());
+        let (needs_rows, outline) = (settings.subtree_only || settings.color.needs_rows(), self.tree.outline.clone());
+        let visits = self.visiting.newest().filter(|_| settings.color == BoxColor::Visits);
         let wanted = Wanted {
             settings,
             view,
@@ -126,6 +129,7 @@ impl State {
             // A row whose cell is on its way is not that of the selected cell.
             top: selected.zip(self.tree.selected).filter(|_| settings.subtree_only && self.tree.selecting.is_none()),
             numbered: needs_rows && outline.is_some(),
+            counted: visits.as_ref().map(|(number, _)| *number),
         };
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
         self.overlay_is_current = current;
@@ -133,7 +137,9 @@ impl State {
         if current || !seen || self.collecting.is_some() || self.is_measuring() {
             return;
         }
-        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), outline, wanted.clone()) {
+        if let Ok(job) =
+            workers::collect(&self.shared, Arc::clone(&shown.accel), (outline, visits.map(|(_, visits)| visits)), wanted.clone())
+        {
             self.collecting = Some((wanted, shown.key.clone(), job));
         }
     }

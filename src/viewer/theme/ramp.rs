@@ -27,6 +27,11 @@ pub fn amount_color(value: f32, [low, high]: [f32; 2]) -> Color32 {
     opaque(viridis(LEAST + (1.0 - LEAST) * t))
 }
 
+/// The colour of a place on viridis, from 0 to 1; what is beyond has that of the end.
+pub fn heat_color(t: f32) -> Color32 {
+    opaque(viridis(t))
+}
+
 /// The darkest that lines can be told on the dark background.
 const LEAST: f32 = 0.35;
 

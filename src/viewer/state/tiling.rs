@@ -1,0 +1,84 @@
+//! Tiles of the view are timed in the background, and shown as long as the view stays what they were timed of.
+
+use std::sync::Arc;
+
+use super::State;
+use crate::job::Outcome;
+use crate::render::{self, Mode};
+use crate::viewer::tiles::{self, TileView};
+
+impl State {
+    /// The present view.
+    fn tile_view(&self) -> Option<TileView> {
+        let key = self.shown.as_ref()?.key.clone();
+        Some(TileView { key, camera: self.camera, size_px: self.size_px, rays: self.settings.heat_rays })
+    }
+
+    /// Whether what was timed is of another view, structure or kind of rays than the present.
+    pub fn tiles_are_old(&self) -> bool {
+        self.tiles.found.as_ref().is_some_and(|(view, _)| self.tile_view().as_ref() != Some(view))
+    }
+
+    /// Whether the picture on the screen is that of the tiles.
+    pub fn shows_tiles(&self) -> bool {
+        self.tiles.shown && self.tiles.picture.is_some() && !self.tiles_are_old()
+    }
+
+    /// Starts timing the tiles of the present view.
+    pub(super) fn time_tiles(&mut self) {
+        if self.is_measuring() || self.is_checking() || self.size_px.contains(&0) {
+            return;
+        }
+        let Some(of) = self.tile_view() else { return };
+        let pause = self.begin_measuring();
+        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
+        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
+        let view = render::Job::new(scene, accel, self.camera, Mode::Nodes, Arc::clone(&model.looks));
+        let view = render::Job { heat_rays: of.rays, ..view };
+        self.tiles.clear();
+        match tiles::time(&self.shared, view, self.size_px, pause) {
+            Ok(job) => self.tiles.running = Some((of, job)),
+            Err(e) => self.fail(format!("Can't time the tiles: {e}.")),
+        }
+    }
+
+    /// Takes in what was timed, and draws it anew where its range has changed.
+    pub(super) fn advance_tiles(&mut self) {
+        if let Some((of, job)) = self.tiles.running.take() {
+            match job.poll() {
+                Outcome::Running => self.tiles.running = Some((of, job)),
+                Outcome::Done(Ok(times)) => self.tiles.found = Some((of, Arc::new(times))),
+                Outcome::Done(Err(_)) => {}
+                Outcome::Died => self.fail("Can't time the tiles: it failed. Please report this.".to_owned()),
+            }
+        }
+        if let Some((range, job)) = self.tiles.drawing.take() {
+            match job.poll() {
+                Outcome::Running => self.tiles.drawing = Some((range, job)),
+                Outcome::Done(picture) => self.tiles.picture = Some((range, Arc::new(picture))),
+                Outcome::Died => {
+                    self.tiles.clear();
+                    self.fail("Can't draw the tiles: it failed. Please report this.".to_owned());
+                }
+            }
+        }
+        if !self.tiles_await_drawing() {
+            return;
+        }
+        if let (Some(found), Some(present)) = (&self.tiles.found, &self.picture) {
+            let drawing = tiles::draw(&self.shared, found.clone(), Arc::clone(present), self.range);
+            self.tiles.drawing = drawing.ok().map(|job| (self.range, job));
+        }
+    }
+
+    /// Whether the tiles on the screen are yet to be drawn, or in another range.
+    fn tiles_await_drawing(&self) -> bool {
+        let current = self.tiles.picture.as_ref().is_some_and(|(range, _)| *range == self.range);
+        self.tiles.shown && self.tiles.found.is_some() && !self.tiles_are_old() && self.tiles.drawing.is_none() && !current
+    }
+
+    /// Whether something of them is on its way.
+    pub(super) fn is_tiling(&self) -> bool {
+        self.tiles.running.is_some() || self.tiles.drawing.is_some() || self.tiles_await_drawing()
+    }
+}
