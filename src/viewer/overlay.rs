@@ -11,6 +11,7 @@ use crate::accel::Accel;
 use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Split, bounds_in_scene, walk_below};
 use crate::accel::outline::{Outline, Row};
 use crate::geometry::{Aabb, Axis};
+use crate::lab::film::Film;
 use crate::task::{Cancel, Cancelled};
 
 /// What an overlay is made for.
@@ -28,6 +29,8 @@ pub struct Wanted {
     pub top: Option<(Cell, u32)>,
     /// The rows of cells are known, for colours that need them.
     pub numbered: bool,
+    /// The position of the film that is shown instead of depths.
+    pub film_at: Option<u32>,
 }
 
 /// An overlay, and how much of the structure it shows.
@@ -110,42 +113,79 @@ struct Collector<'a> {
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
-pub fn collect(accel: &dyn Accel, outline: Option<&Outline>, wanted: &Wanted, cancel: &Cancel) -> Result<Collected, Cancelled> {
+pub fn collect(
+    accel: &dyn Accel,
+    (outline, film): (Option<&Outline>, Option<&Film>),
+    wanted: &Wanted,
+    cancel: &Cancel,
+) -> Result<Collected, Cancelled> {
     let resolution = if let Layout::Flat { resolution, .. } = accel.layout() { Some(resolution) } else { None };
     let ruler = Ruler::new(&wanted.view, wanted.size_px);
     let mut collector = Collector { wanted, ruler, resolution, found: Vec::new(), total: 0, more: false };
     let mut looked = 0u64;
     let mut stopped = Ok(());
-    let mut visit = |cell: &Cell, row: Option<Row>| {
+    let film = film.zip(wanted.film_at);
+    let mut visit = |cell: &Cell, at: Option<(&Outline, u32)>| {
         looked += 1;
         if looked.is_multiple_of(CELLS_PER_CHECK) {
             stopped = cancel.check();
         }
-        if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell, row)) }
+        let row = at.map(|(outline, row)| outline.row(row));
+        let whole = film.zip(at).map(|((film, position), (_, row))| film.is_whole(row, position));
+        if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell, row, whole)) }
     };
     let top = wanted.top.map_or_else(|| accel.root(), |top| top.0);
-    match outline.filter(|_| wanted.numbered) {
+    match film.map(|film| film.0.outline()).or(outline.filter(|_| wanted.numbered)) {
         Some(outline) => {
             let row = wanted.top.map_or(0, |top| top.1);
             // Whether it broke off is known already.
-            let _ = outline.walk_below(accel, &top, row, &mut |cell, row| visit(cell, Some(outline.row(row))));
+            let _ = outline.walk_below(accel, &top, row, &mut |cell, row| visit(cell, Some((outline, row))));
         }
         None => walk_below(accel, top, &mut |cell| visit(cell, None)),
     }
     stopped?;
-    Ok(collector.finish(accel))
+    let mut collected = collector.finish(accel);
+    if let Some((film, at)) = film {
+        light(accel, film, at, wanted, &mut collected);
+    }
+    Ok(collected)
+}
+
+/// The most parts that a cell is divided into that stand out.
+const MOST_LIT: usize = 32;
+
+/// The cell that was just divided or merged, and its parts; and the plane between them.
+fn light(accel: &dyn Accel, film: &Film, at: u32, wanted: &Wanted, collected: &mut Collected) {
+    let Some(row) = film.just(at) else { return };
+    let cells = film.outline().cells(accel, row);
+    let Some(cell) = cells.last() else { return };
+    let white = |cell: &Cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4]);
+    let overlay = &mut collected.overlay;
+    accel.children(cell, &mut |part| {
+        overlay.lit.push(white(&part));
+        if overlay.lit.len() <= MOST_LIT { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    if overlay.lit.len() > MOST_LIT {
+        overlay.lit.clear();
+    }
+    overlay.lit.push(white(cell));
+    if let Some(Split::Axis { axis, pos }) = cell.split.filter(|_| wanted.settings.planes) {
+        let plane = plane_in(cell.shape.bounds(), axis, pos);
+        overlay.planes.push(placed(accel, cell.id.instance, &plane, theme::TRIED.to_array()));
+    }
 }
 
 impl Collector<'_> {
-    fn visit(&mut self, accel: &dyn Accel, cell: &Cell, row: Option<Row>) -> Descend {
+    /// Of a film it is told whether the cell is whole: then it is drawn, and nothing below it.
+    fn visit(&mut self, accel: &dyn Accel, cell: &Cell, row: Option<Row>, whole: Option<bool>) -> Descend {
         let s = &self.wanted.settings;
         let bounds = bounds_in_scene(accel, cell);
         let Some(px) = self.ruler.pixels(&bounds) else {
-            self.more |= !cell.is_leaf();
-            self.total += usize::from(self.wants_box(cell));
+            self.more |= !cell.is_leaf() && whole != Some(true);
+            self.total += usize::from(self.wants_box(cell, whole));
             return Descend::No;
         };
-        if self.wants_box(cell) {
+        if self.wants_box(cell, whole) {
             self.total += 1;
             if px >= LEAST_PX {
                 let value = value(s.color, cell, row);
@@ -154,6 +194,7 @@ impl Collector<'_> {
         }
         if let Some(Split::Axis { axis, pos }) = cell.split
             && s.planes
+            && whole.is_none()
             && (s.from_depth..=s.depth).contains(&cell.depth)
         {
             self.total += 1;
@@ -162,7 +203,8 @@ impl Collector<'_> {
                 self.keep(Found { bounds, value, plane: true, ..Found::new(cell, px) });
             }
         }
-        let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
+        let by_settings = || s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
+        let deeper = whole.map_or_else(by_settings, |whole| !whole);
         if px < LEAST_PX && !cell.is_leaf() && deeper {
             self.more = true;
             return Descend::No;
@@ -191,12 +233,13 @@ impl Collector<'_> {
         }
     }
 
-    fn wants_box(&self, cell: &Cell) -> bool {
+    fn wants_box(&self, cell: &Cell, whole: Option<bool>) -> bool {
         let s = &self.wanted.settings;
         let leaf = cell.is_leaf();
         s.boxes
             && match cell.kind {
                 CellKind::Void | CellKind::Leaf { prims: 0 } if !s.empty_cells => false,
+                _ if let Some(whole) = whole => whole,
                 _ if self.resolution.is_some() => leaf && self.in_slice(cell),
                 _ if s.leaves_only => leaf,
                 _ => (s.from_depth..=s.depth).contains(&cell.depth),
@@ -282,8 +325,8 @@ mod tests {
         let settings = OverlaySettings { boxes: true, planes: false, empty_cells: true, slice: 0, ..OverlaySettings::default() };
         let camera = Camera { eye: Vec3::new(0.3, 0.4, 1.0), target: Vec3::ZERO, up: Vec3::Y, projection };
         let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
-        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false };
-        (collect(accel.as_ref(), None, &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
+        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false, film_at: None };
+        (collect(accel.as_ref(), (None, None), &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
     }
 
     #[test]

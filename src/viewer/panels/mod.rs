@@ -8,6 +8,7 @@ pub mod check;
 pub mod decision;
 pub mod error_side;
 pub mod errors;
+pub mod film;
 pub mod findings;
 pub mod help;
 pub mod long_list;
