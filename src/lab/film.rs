@@ -11,16 +11,17 @@ use crate::accel::cell::Layout;
 use crate::accel::outline::Outline;
 use crate::accel::params::{ParamValues, Value};
 use crate::accel::stats::SahWeights;
+use crate::geometry::num;
 use crate::task::{Budget, Cancel, Cancelled, Charge, OverBudget, Progress};
 
 /// Events one by one, at most; of more there is one for each level.
 pub const MOST: usize = 4096;
 /// Cells that one divides into of which each is told.
-const TOLD: usize = 8;
+const TOLD: u32 = 8;
 /// Rows between two looks at whether to stop.
 const PER_CHECK: u32 = 1 << 14;
-/// Bytes of an event: its row or its level, and the cost after it.
-const BYTES: u64 = 4 + 8;
+/// Bytes of an event: two numbers, and the cost after it.
+const BYTES: u64 = 8 + 8;
 
 /// The way a builder works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,8 +71,8 @@ pub enum FilmError {
 /// What happens, in order.
 #[derive(Debug)]
 enum Events {
-    /// One cell after another, by its row.
-    Rows(Vec<u32>),
+    /// One cell after another: its row, and how many cells it is divided into or merged from.
+    Rows(Vec<(u32, u32)>),
     /// All cells of a level or round at once: which, and how many there are.
     Levels(Vec<(u32, u32)>),
 }
@@ -144,7 +145,8 @@ impl Film {
         if rows.len() <= MOST {
             rows.sort_unstable_by_key(|row| self.key(*row));
             self.costs.extend(rows.iter().map(|row| after(costs.change(*row))));
-            self.events = Events::Rows(rows);
+            let parts = |row: u32| self.outline.children(row).count();
+            self.events = Events::Rows(rows.into_iter().map(|row| (row, num::index(parts(row)))).collect());
         } else {
             self.costs.extend(levels.values().map(|level| after(level.1)));
             self.events = Events::Levels(levels.into_iter().map(|(level, (cells, _))| (level, cells)).collect());
@@ -168,7 +170,7 @@ impl Film {
             Events::Rows(rows) => rows.len(),
             Events::Levels(levels) => levels.len(),
         };
-        u32::try_from(events).unwrap_or(u32::MAX)
+        num::index(events)
     }
 
     /// The SAH cost at a position, the last one beyond the end. From the root down it is that of the tree so far, with cells that
@@ -187,7 +189,7 @@ impl Film {
     /// The row of the cell that was just divided or merged; none at the start, nor where events are whole levels.
     pub fn just(&self, at: u32) -> Option<u32> {
         match &self.events {
-            Events::Rows(rows) => rows.get(at.checked_sub(1)? as usize).copied(),
+            Events::Rows(rows) => Some(rows.get(at.checked_sub(1)? as usize)?.0),
             Events::Levels(_) => None,
         }
     }
@@ -203,7 +205,7 @@ impl Film {
         let Some(last) = at.checked_sub(1) else { return false };
         let last = last as usize;
         match &self.events {
-            Events::Rows(rows) => rows.get(last).is_none_or(|event| self.key(row) <= self.key(*event)),
+            Events::Rows(rows) => rows.get(last).is_none_or(|event| self.key(row) <= self.key(event.0)),
             Events::Levels(levels) => levels.get(last).is_none_or(|(level, _)| self.level(row) <= *level),
         }
     }
@@ -253,13 +255,13 @@ impl Film {
         }
     }
 
-    fn tell_cell(&self, row: u32, number: &str, last: &str) -> String {
+    fn tell_cell(&self, (row, parts): (u32, u32), number: &str, last: &str) -> String {
         let whole = counted(self.outline.row(row).references, "triangle");
-        let parts: Vec<u32> = self.outline.children(row).take(TOLD + 1).collect();
-        let parts = if parts.len() > TOLD {
-            format!("{} cells", format::count(self.outline.children(row).count() as u64))
+        let parts = if parts > TOLD {
+            format!("{} cells", format::count(parts.into()))
         } else {
-            listed(&parts.iter().map(|part| format::count(self.outline.row(*part).references.into())).collect::<Vec<_>>())
+            let held = |part: u32| format::count(self.outline.row(part).references.into());
+            listed(&self.outline.children(row).map(held).collect::<Vec<_>>())
         };
         match self.order {
             Order::Splits => format!("Split {number} of {last}: {whole} into {parts}"),
@@ -287,6 +289,7 @@ fn listed(parts: &[String]) -> String {
 /// The round of each row: 0 of leaves, and one more than the latest of those it is made of.
 fn rounds(outline: &Outline, charge: &mut Charge, cancel: &Cancel) -> Result<Vec<u8>, FilmError> {
     charge.grow(outline.len().into())?;
+    cancel.check()?;
     let mut rounds = vec![0u8; outline.len() as usize];
     // Children come after their parent.
     for row in (1..outline.len()).rev() {
@@ -393,7 +396,7 @@ mod tests {
         try_film(model, id, set, 1 << 30).expect("made")
     }
 
-    const SMALL: &str = "builtin:soup?triangles=600";
+    const SMALL: &str = "builtin:soup?triangles=200";
     const KINDS: [(&str, &[(&str, &str)]); 7] = [
         ("bvh", &[]),
         ("bvh", &[("builder", "ploc")]),
@@ -426,14 +429,14 @@ mod tests {
             let Events::Rows(rows) = &film.events else { panic!("{id}: few") };
             let inner = (0..film.outline().len()).filter(|row| !film.outline().below(*row).is_empty());
             assert_eq!(rows.len(), inner.count(), "{id}: each once");
-            for (i, row) in rows.iter().enumerate() {
-                let parent = film.outline().parent(*row).map(|parent| rows.iter().position(|other| *other == parent));
+            for (i, (row, _)) in rows.iter().enumerate() {
+                let parent = film.outline().parent(*row).map(|parent| rows.iter().position(|other| other.0 == parent));
                 let before = parent.flatten().is_none_or(|parent| parent < i);
                 let first = i == if film.order() == Order::Splits { 0 } else { rows.len() - 1 };
                 assert_eq!(parent.is_none(), first, "{id}: {i}");
                 assert!(parent.is_none() || before == (film.order() == Order::Splits), "{id}: {i}");
             }
-            let levels: Vec<u32> = rows.iter().map(|row| film.level(*row)).collect();
+            let levels: Vec<u32> = rows.iter().map(|row| film.level(row.0)).collect();
             assert!(levels.is_sorted(), "{id}: by level or round");
         }
     }

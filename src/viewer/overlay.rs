@@ -108,7 +108,7 @@ struct Collector<'a> {
     more: bool,
 }
 
-/// Walks the structure as deep as the settings want, skipping what is below a cell that cannot be
+/// Walks the structure as deep as the settings want, or as the film of its build has come, skipping what is below a cell that cannot be
 /// seen: a hierarchy's children lie inside it.
 ///
 /// # Errors
