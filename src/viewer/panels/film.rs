@@ -24,19 +24,19 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let Some((film, at)) = state.film_on_screen() else { return offer(ui, state, commands) };
     let area = ui.available_rect_before_wrap();
     let (left, right) = area.split_left_right_at_fraction(1.0 - PLOT);
-    ui.scope_builder(UiBuilder::new().id_salt("film").max_rect(left.with_max_x(left.right() - theme::GUTTER)), |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            title(ui, film, commands);
-            player(ui, state, commands);
-            ui.add(Label::new(film.tell(at)).wrap());
-            if state.shown.as_ref().is_some_and(|shown| is_reinserted(&shown.key.params)) {
-                let text = "Reinsertion moved nodes after that; which ones, the finished tree does not say.";
-                ui.add(Label::new(RichText::new(text).small().color(Palette::in_ui(ui).dim)).wrap());
-            }
-        });
+    ui.allocate_rect(area, Sense::hover());
+    let left = left.with_max_x(left.right() - theme::GUTTER);
+    let mut hands = ui.new_child(UiBuilder::new().id_salt("film").max_rect(left));
+    ScrollArea::vertical().auto_shrink(false).show(&mut hands, |ui| {
+        title(ui, film, commands);
+        player(ui, state, commands);
+        ui.add(Label::new(film.tell(at)).wrap());
+        if state.shown.as_ref().is_some_and(|shown| is_reinserted(&shown.key.params)) {
+            let text = "Then reinsertion moved nodes: which ones, the finished tree does not say.";
+            ui.add(Label::new(RichText::new(text).small().color(Palette::in_ui(ui).dim)).wrap());
+        }
     });
     plot(ui, right, film, at, commands);
-    ui.take_available_space();
 }
 
 /// The way to a film.
@@ -73,10 +73,10 @@ fn label(ui: &mut Ui) {
 const fn help(order: Order) -> &'static str {
     match order {
         Order::Splits => {
-            "Replayed from the finished structure: cells are divided breadth first. The builder may have gone otherwise, and on several threads."
+            "Replayed from the finished structure: cells are divided breadth first, as if the order had been kept, which it was not."
         }
         Order::Merges => {
-            "Replayed from the finished structure: a cell is merged in the first round in which it can have been. The builder may have come to it later."
+            "Replayed from the finished structure: a cell is merged in the first round in which it can have been, if not later."
         }
     }
 }
