@@ -78,6 +78,9 @@ pub struct Args {
     /// With that, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
     #[arg(long, value_name = "AXIS,PLACE", value_parser = plane, requires = "select")]
     pub try_plane: Option<(Axis, f64)>,
+    /// Begin in the Structure workspace; with --screenshot, make the film of the build first, and go to that part of it, from 0 to 1.
+    #[arg(long, value_name = "PART", value_parser = part, conflicts_with_all = ["measure", "check", "errors", "follow"])]
+    pub film: Option<f32>,
     /// Begin in the Ray workspace; with --screenshot, follow the ray of that place first: -1,-1 is the lower left corner of the
     /// view, 1,1 the upper right.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with_all = ["select", "measure", "check", "errors"])]
@@ -126,6 +129,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         errors: args.errors.and_then(|plot| plot.parse().ok()),
         select: args.select,
         try_plane: args.try_plane,
+        film: args.film,
         follow: args.follow,
         beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),
         brute: args.check_brute,
@@ -158,6 +162,12 @@ fn plane(text: &str) -> Result<(Axis, f64), String> {
         Some((axis, place))
     });
     parsed.ok_or_else(|| "a plane is an axis and a place from 0 to 1, as in x,0.4".to_owned())
+}
+
+/// `0.3`: a part of a whole.
+fn part(text: &str) -> Result<f32, String> {
+    let part = text.trim().parse().ok().filter(|part| (0.0..=1.0).contains(part));
+    part.ok_or_else(|| "a part is a number from 0 to 1, as in 0.3".to_owned())
 }
 
 /// `0.1,-0.2`: a place in the view.

@@ -11,6 +11,7 @@ mod differing;
 mod division;
 mod estimate;
 mod facts;
+pub mod film;
 pub mod findings;
 pub mod follow;
 pub mod format;

@@ -82,6 +82,13 @@ const BOXES: KeyboardShortcut = with(Modifiers::NONE, Key::B);
 
 /// One step of moving the section.
 const SECTION_STEP: f32 = 0.05;
+/// The film of the build: an event back.
+pub const FILM_BACK: KeyboardShortcut = with(Modifiers::NONE, Key::Comma);
+/// An event forward.
+pub const FILM_FORWARD: KeyboardShortcut = with(Modifiers::NONE, Key::Period);
+/// Plays it, and pauses.
+pub const FILM_PLAY: KeyboardShortcut = with(Modifiers::NONE, Key::K);
+
 /// One step of enlarging.
 const SCALE_STEP: f32 = 0.25;
 
@@ -99,7 +106,15 @@ pub const fn key_of(workspace: Workspace) -> KeyboardShortcut {
 
 /// A key as it is written on the keyboard.
 pub fn written(ctx: &Context, key: &KeyboardShortcut) -> String {
-    let signs = [("OpenBracket", "["), ("CloseBracket", "]"), ("Questionmark", "?"), ("Plus", "+"), ("Minus", "-")];
+    let signs = [
+        ("OpenBracket", "["),
+        ("CloseBracket", "]"),
+        ("Questionmark", "?"),
+        ("Plus", "+"),
+        ("Minus", "-"),
+        ("Comma", ","),
+        ("Period", "."),
+    ];
     signs.into_iter().fold(ctx.format_shortcut(key), |text, (name, sign)| text.replace(name, sign))
 }
 
@@ -149,6 +164,8 @@ pub fn all(state: &State) -> Vec<Action> {
     boxes(&mut list, state);
     list.group = "Structure";
     structure(&mut list, state);
+    list.group = "Film";
+    film(&mut list, state);
     list.group = "Ray";
     ray(&mut list, state);
     list.group = "Measure";
@@ -244,7 +261,8 @@ fn boxes(list: &mut List, state: &State) {
     ] {
         let single = now.from_depth == now.depth;
         let overlay = OverlaySettings { depth, from_depth: if single { depth } else { now.from_depth.min(depth) }, ..now };
-        list.add(name, Command::Overlay(overlay)).key(key).if_possible(overlay != now && state.shown.is_some());
+        let drawn = state.shown.is_some() && state.film_on_screen().is_none();
+        list.add(name, Command::Overlay(overlay)).key(key).if_possible(overlay != now && drawn);
     }
     for color in BoxColor::ALL {
         let overlay = OverlaySettings { color, ..now };
@@ -271,6 +289,22 @@ fn structure(list: &mut List, state: &State) {
     list.add("Open all of the tree", Command::OpenBelow(0)).if_possible(outline.is_some());
     let hide = !state.settings.hide_outcome;
     list.add(if hide { "Hide outcomes" } else { "Show outcomes" }, Command::HideOutcome(hide));
+}
+
+fn film(list: &mut List, state: &State) {
+    let (filming, on_screen) = (&state.filming, state.film_on_screen().is_some());
+    list.add("Make the film of the build", Command::MakeFilm).if_possible(state.can_make_film());
+    let playing = filming.playing.is_some();
+    let (name, play) = if playing { ("Film: pause", false) } else { ("Film: play", true) };
+    list.add(name, Command::PlayFilm(play)).key(FILM_PLAY).if_possible(on_screen);
+    let (at, last) = (filming.at, filming.last());
+    let back = list.add("Film: back", Command::FilmTo(at.saturating_sub(1)));
+    back.key(FILM_BACK).if_possible(on_screen && at > 0);
+    let forward = list.add("Film: forward", Command::FilmTo(at.saturating_add(1)));
+    forward.key(FILM_FORWARD).if_possible(on_screen && at < last);
+    list.add("Film: start", Command::FilmTo(0)).if_possible(on_screen && at > 0);
+    list.add("Film: end", Command::FilmTo(last)).if_possible(on_screen && at < last);
+    list.add("Film: close", Command::CloseFilm).if_possible(filming.film.is_some());
 }
 
 fn ray(list: &mut List, state: &State) {

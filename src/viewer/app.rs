@@ -210,7 +210,8 @@ impl App {
     fn centre(&mut self, ui: &mut Ui) {
         let below: Option<(&str, f32, Below)> = match self.state.settings.workspace {
             Workspace::View => Some(("timings", theme::BOTTOM_PANEL, panels::timings::show)),
-            Workspace::Structure => None,
+            Workspace::Structure if self.state.filming.film.is_some() => Some(("film", theme::FILM_PANEL, panels::film::show)),
+            Workspace::Structure => self.state.has_film().then_some(("film offer", theme::FILM_OFFER, panels::film::show)),
             Workspace::Ray => Some(("steps", theme::STEPS_PANEL, panels::steps::show)),
             Workspace::Compare => Some(("errors", theme::ERROR_PANEL, panels::errors::show)),
             Workspace::Check => Some(("matrix", theme::MATRIX_PANEL, panels::stability::show)),
@@ -286,9 +287,15 @@ impl eframe::App for App {
         if let Some(due) = self.state.play_on() {
             ctx.request_repaint_after(due);
         }
+        if let Some(due) = self.state.play_film_on() {
+            ctx.request_repaint_after(due);
+        }
         // Progress bars move; everything else wakes the window itself.
         let state = &self.state;
-        let measured = state.is_measuring() || state.is_checking() || state.brute.running.is_some();
+        let measured = state.is_measuring()
+            || state.is_checking()
+            || state.brute.running.is_some()
+            || state.filming.making.is_some();
         if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }

@@ -73,6 +73,16 @@ pub enum Command {
     CloseTree,
     /// Try a plane in the selected node: across which axis, and where from 0 to 1.
     TryPlane(Option<(Axis, f64)>),
+    /// Make the film of the shown structure's build.
+    MakeFilm,
+    /// Put it away, or stop making it.
+    CloseFilm,
+    /// Show it after so many events.
+    FilmTo(u32),
+    /// Play it, or stop.
+    PlayFilm(bool),
+    /// Its events a second.
+    FilmSpeed(f32),
     /// Look why rays of this view are slow.
     FindCauses,
     /// Stop that.

@@ -12,6 +12,7 @@ pub mod command;
 pub mod dialogs;
 mod endurance;
 pub mod errors;
+pub mod filming;
 pub mod folding;
 pub mod format;
 pub mod gpu;

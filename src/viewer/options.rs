@@ -50,6 +50,9 @@ pub struct ViewerOptions {
     pub select: Option<Rank>,
     /// With that, try a plane across an axis of it, at a place from 0 to 1.
     pub try_plane: Option<(Axis, f64)>,
+    /// Begin in the Structure workspace; with `screenshot`, make the film of the build first, and go to that part of it, from 0
+    /// to 1.
+    pub film: Option<f32>,
     /// Begin in the Ray workspace; with `screenshot`, follow the ray of that place first: (-1, -1) is the lower left corner of
     /// the view, (1, 1) the upper right.
     pub follow: Option<[f32; 2]>,
@@ -89,7 +92,7 @@ impl ViewerOptions {
         if self.check {
             settings.workspace = Workspace::Check;
         }
-        if self.select.is_some() {
+        if self.select.is_some() || self.film.is_some() {
             settings.workspace = Workspace::Structure;
         }
         if self.follow.is_some() {

@@ -12,6 +12,7 @@ use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Shape, Split, b
 use crate::accel::outline::{Outline, Row};
 use crate::geometry::{Aabb, Axis, HalfSpace};
 use crate::lab::Visits;
+use crate::lab::film::Film;
 use crate::task::{Cancel, Cancelled};
 
 /// What an overlay is made for.
@@ -31,6 +32,8 @@ pub struct Wanted {
     pub numbered: bool,
     /// Which count of visits colours stand for, if they do and there is one.
     pub counted: Option<u64>,
+    /// The position of the film that is shown instead of depths.
+    pub film_at: Option<u32>,
 }
 
 /// An overlay, and how much of the structure it shows.
@@ -110,14 +113,14 @@ struct Collector<'a> {
     more: bool,
 }
 
-/// Walks the structure as deep as the settings want, skipping what is below a cell that cannot be
+/// Walks the structure as deep as the settings want, or as the film of its build has come, skipping what is below a cell that cannot be
 /// seen: a hierarchy's children lie inside it.
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
 pub fn collect(
     accel: &dyn Accel,
-    (outline, visits): (Option<&Outline>, Option<&Visits>),
+    (outline, visits, film): (Option<&Outline>, Option<&Visits>, Option<&Film>),
     wanted: &Wanted,
     cancel: &Cancel,
 ) -> Result<Collected, Cancelled> {
@@ -126,37 +129,69 @@ pub fn collect(
     let mut collector = Collector { wanted, visits, ruler, resolution, found: Vec::new(), total: 0, more: false };
     let mut looked = 0u64;
     let mut stopped = Ok(());
-    let mut visit = |cell: &Cell, row: Option<Row>| {
+    let film = film.zip(wanted.film_at);
+    let mut visit = |cell: &Cell, at: Option<(&Outline, u32)>| {
         looked += 1;
         if looked.is_multiple_of(CELLS_PER_CHECK) {
             stopped = cancel.check();
         }
-        if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell, row)) }
+        let row = at.map(|(outline, row)| outline.row(row));
+        let whole = film.zip(at).map(|((film, position), (_, row))| film.is_whole(row, position));
+        if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell, row, whole)) }
     };
     let top = wanted.top.map_or_else(|| accel.root(), |top| top.0);
-    match outline.filter(|_| wanted.numbered) {
+    match film.map(|film| film.0.outline()).or(outline.filter(|_| wanted.numbered)) {
         Some(outline) => {
             let row = wanted.top.map_or(0, |top| top.1);
             // Whether it broke off is known already.
-            let _ = outline.walk_below(accel, &top, row, &mut |cell, row| visit(cell, Some(outline.row(row))));
+            let _ = outline.walk_below(accel, &top, row, &mut |cell, row| visit(cell, Some((outline, row))));
         }
         None => walk_below(accel, top, &mut |cell| visit(cell, None)),
     }
     stopped?;
-    Ok(collector.finish(accel))
+    let mut collected = collector.finish(accel);
+    if let Some((film, at)) = film {
+        light(accel, film, at, wanted, &mut collected);
+    }
+    Ok(collected)
+}
+
+/// The most parts that a cell is divided into that stand out.
+const MOST_LIT: usize = 32;
+
+/// The cell that was just divided or merged, and its parts; and the plane between them.
+fn light(accel: &dyn Accel, film: &Film, at: u32, wanted: &Wanted, collected: &mut Collected) {
+    let Some(row) = film.just(at) else { return };
+    let cells = film.outline().cells(accel, row);
+    let Some(cell) = cells.last() else { return };
+    let white = |cell: &Cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4]);
+    let overlay = &mut collected.overlay;
+    accel.children(cell, &mut |part| {
+        overlay.lit.push(white(&part));
+        if overlay.lit.len() <= MOST_LIT { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    if overlay.lit.len() > MOST_LIT {
+        overlay.lit.clear();
+    }
+    overlay.lit.push(white(cell));
+    if let Some(Split::Axis { axis, pos }) = cell.split.filter(|_| wanted.settings.planes) {
+        let plane = plane_in(cell.shape.bounds(), axis, pos);
+        overlay.planes.push(placed(accel, cell.id.instance, &plane, theme::TRIED.to_array()));
+    }
 }
 
 impl Collector<'_> {
-    fn visit(&mut self, accel: &dyn Accel, cell: &Cell, row: Option<Row>) -> Descend {
+    /// Of a film it is told whether the cell is whole: then it is drawn, and nothing below it.
+    fn visit(&mut self, accel: &dyn Accel, cell: &Cell, row: Option<Row>, whole: Option<bool>) -> Descend {
         let s = &self.wanted.settings;
         let bounds = bounds_in_scene(accel, cell);
         // What the section cuts away is as good as out of view.
         let Some(px) = self.ruler.pixels(&bounds).filter(|_| !self.is_cut_away(&bounds)) else {
-            self.more |= !cell.is_leaf();
-            self.total += usize::from(self.wants_box(cell));
+            self.more |= !cell.is_leaf() && whole != Some(true);
+            self.total += usize::from(self.wants_box(cell, whole));
             return Descend::No;
         };
-        if self.wants_box(cell) {
+        if self.wants_box(cell, whole) {
             self.total += 1;
             if px >= LEAST_PX {
                 let value = self.value(cell, row);
@@ -165,6 +200,7 @@ impl Collector<'_> {
         }
         if let Some(Split::Axis { axis, pos }) = cell.split
             && s.planes
+            && whole.is_none()
             && (s.from_depth..=s.depth).contains(&cell.depth)
         {
             self.total += 1;
@@ -174,7 +210,8 @@ impl Collector<'_> {
                 self.keep(Found { bounds, value, plane: true, ..Found::new(cell, px) });
             }
         }
-        let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
+        let by_settings = || s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
+        let deeper = whole.map_or_else(by_settings, |whole| !whole);
         if px < LEAST_PX && !cell.is_leaf() && deeper {
             self.more = true;
             return Descend::No;
@@ -207,12 +244,13 @@ impl Collector<'_> {
         }
     }
 
-    fn wants_box(&self, cell: &Cell) -> bool {
+    fn wants_box(&self, cell: &Cell, whole: Option<bool>) -> bool {
         let s = &self.wanted.settings;
         let leaf = cell.is_leaf();
         s.boxes
             && match cell.kind {
                 CellKind::Void | CellKind::Leaf { prims: 0 } if !s.empty_cells => false,
+                _ if let Some(whole) = whole => whole,
                 _ if self.resolution.is_some() => leaf && self.in_slice(cell),
                 _ if s.leaves_only => leaf,
                 _ => (s.from_depth..=s.depth).contains(&cell.depth),
@@ -305,8 +343,9 @@ mod tests {
         let settings = OverlaySettings { boxes: true, planes: false, empty_cells: true, slice: 0, ..OverlaySettings::default() };
         let camera = Camera { eye: Vec3::new(0.3, 0.4, 1.0), target: Vec3::ZERO, up: Vec3::Y, projection };
         let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
-        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false, counted: None };
-        (collect(accel.as_ref(), (None, None), &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
+        let wanted =
+            Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false, counted: None, film_at: None };
+        (collect(accel.as_ref(), (None, None, None), &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
     }
 
     #[test]

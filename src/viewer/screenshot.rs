@@ -30,6 +30,8 @@ pub struct Screenshot {
     /// The cell that is still to be selected, and the plane to be tried in it.
     select: Option<Rank>,
     try_plane: Option<(Axis, f64)>,
+    /// The part of the film that is still to be gone to, and whether the film was asked for.
+    film: Option<(f32, bool)>,
     /// What is still to be done in the Ray workspace.
     follow: Vec<Command>,
     /// The view is still to be compared with brute force.
@@ -79,6 +81,7 @@ impl Screenshot {
             errors: options.errors.map(|plot| (plot, 0)),
             select: options.select,
             try_plane: options.try_plane,
+            film: options.film.map(|part| (part, false)),
             follow: follow(options),
             brute: options.brute,
             tiles: if options.time_tiles { vec![Command::ShowTiles(true), Command::TimeTiles] } else { Vec::new() },
@@ -104,6 +107,7 @@ impl Screenshot {
             Stage::Settling if settled && self.try_plane.is_some() => {
                 commands.push(Command::TryPlane(self.try_plane.take()));
             }
+            Stage::Settling if settled && self.film.is_some() => self.film(state, commands),
             Stage::Settling if settled && !self.follow.is_empty() => {
                 commands.push(match self.follow.remove(0) {
                     // The middle of the way says more than its start.
@@ -165,6 +169,22 @@ fn follow(options: &ViewerOptions) -> Vec<Command> {
     let Some(at) = options.follow else { return Vec::new() };
     let beside = options.beside.iter().filter_map(|id| registry::find(id)).map(|entry| Command::Beside(entry.id, true));
     std::iter::once(Command::Pick(at.into())).chain(beside).chain([Command::Step(0, 0)]).collect()
+}
+
+impl Screenshot {
+    /// Makes the film of the build, then goes to a part of it; there may be none.
+    fn film(&mut self, state: &State, commands: &mut Commands) {
+        match &mut self.film {
+            Some((_, asked)) if !*asked => {
+                *asked = true;
+                commands.push(Command::MakeFilm);
+            }
+            film => {
+                let part = film.take().map_or(0.0, |film| film.0);
+                commands.push(Command::FilmTo((part * state.filming.last() as f32).round() as u32));
+            }
+        }
+    }
 }
 
 /// Structures whose curves of errors are drawn beside that of the one that is shown first.

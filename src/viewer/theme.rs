@@ -63,6 +63,10 @@ pub const PRESENTED_LINES: f32 = 2.0;
 pub const LONG_MENU: f32 = 14.0 * ROW;
 /// The height of the steps of a ray.
 pub const STEPS_PANEL: f32 = 280.0;
+/// The height of the film of a build.
+pub const FILM_PANEL: f32 = 160.0;
+/// The height of the row that offers one.
+pub const FILM_OFFER: f32 = ROW + GUTTER;
 /// The width of the tree of cells.
 pub const TREE_PANEL: f32 = 336.0;
 /// The height of the bar at the top.

@@ -21,6 +21,7 @@ use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::job::Job;
 use crate::lab::converge::Reference;
+use crate::lab::film::Film;
 use crate::lab::findings::{self, Findings};
 use crate::lab::follow::{self, Followed};
 use crate::lab::needs::{Kept, NeedsReport};
@@ -191,11 +192,12 @@ pub type Collecting = Job<Result<Collected, Cancelled>>;
 pub fn collect(
     shared: &Shared,
     accel: Arc<dyn Accel>,
-    (outline, visits): (Option<Arc<Outline>>, Option<Arc<Visits>>),
+    (outline, visits, film): (Option<Arc<Outline>>, Option<Arc<Visits>>, Option<Arc<Film>>),
     wanted: Wanted,
 ) -> std::io::Result<Collecting> {
     Job::spawn("overlay", shared.waker(), move |cancel, _| {
-        overlay::collect(accel.as_ref(), (outline.as_deref(), visits.as_deref()), &wanted, cancel)
+        let rows = (outline.as_deref(), visits.as_deref(), film.as_deref());
+        overlay::collect(accel.as_ref(), rows, &wanted, cancel)
     })
 }
 

@@ -219,6 +219,11 @@ fn no_text_is_cut_off_around_a_tree_and_a_ray() {
         w.button("Deepest leaf");
         w.settle();
         check(&mut w, case, "a leaf of the tree", &mut wrong);
+        w.button("Make the film");
+        w.until("the film", |s| s.filming.film.is_some());
+        w.key(Modifiers::NONE, egui::Key::Period);
+        w.settle();
+        check(&mut w, case, "a film", &mut wrong);
         w.key(Modifiers::NONE, egui::Key::F3);
         check(&mut w, case, "no ray", &mut wrong);
         let at = w.viewport().center();

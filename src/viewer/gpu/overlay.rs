@@ -63,9 +63,11 @@ pub struct Overlay {
     pub tried: Option<BoxInstance>,
     /// The selected box, over everything else and in its own style; its colour is not used.
     pub selected: Option<BoxInstance>,
+    /// More boxes in that style.
+    pub lit: Vec<BoxInstance>,
 }
 
-/// The instances of an overlay on the GPU: boxes, then planes, then the selected one.
+/// The instances of an overlay on the GPU: boxes, then planes, then those that stand out.
 pub(super) struct OverlayBuffer {
     buffer: wgpu::Buffer,
     generation: Option<u64>,
@@ -87,7 +89,8 @@ impl OverlayBuffer {
         // Far more than can be told apart on any screen; what is selected and the planes go first.
         let most = num::floor_index(device.limits().max_buffer_size as f64, num::MAX_INDEX) / size_of::<BoxInstance>();
         let (selected, tried) = (overlay.selected.as_slice(), overlay.tried.as_slice());
-        let single = selected.len() + tried.len();
+        let lit = &overlay.lit[..overlay.lit.len().min(most - 2)];
+        let single = selected.len() + tried.len() + lit.len();
         let planes = &overlay.planes[..overlay.planes.len().min(most - single)];
         let boxes = &overlay.boxes[..overlay.boxes.len().min(most - single - planes.len())];
 
@@ -96,12 +99,13 @@ impl OverlayBuffer {
             self.buffer = instance_buffer(device, count.next_power_of_two().min(most));
         }
         let mut offset = 0;
-        for part in [boxes, planes, tried, selected] {
+        for part in [boxes, planes, tried, lit, selected] {
             let bytes: &[u8] = bytemuck::cast_slice(part);
             queue.write_buffer(&self.buffer, offset, bytes);
             offset += bytes.len() as u64;
         }
-        [self.boxes, self.planes, self.selected] = [boxes.len(), planes.len() + tried.len(), selected.len()].map(num::index);
+        let counts = [boxes.len(), planes.len() + tried.len(), lit.len() + selected.len()];
+        [self.boxes, self.planes, self.selected] = counts.map(num::index);
         self.generation = Some(overlay.generation);
     }
 

@@ -41,7 +41,7 @@ fn captions(state: &State) -> Vec<Caption> {
     let coarse = progress.map(|p| format!("1/{} resolution after {}", p.step, format::duration(p.secs)));
     let change = state.change.as_ref().filter(|(_, until)| *until > Instant::now()).map(|(text, _)| text.clone());
     let check = state.settings.workspace == Workspace::Check && !state.checks.caption.is_empty();
-    let marked = check.then(|| state.checks.caption.clone()).or_else(|| moment(state));
+    let marked = check.then(|| state.checks.caption.clone()).or_else(|| moment(state)).or_else(|| filmed(state));
     // Their corners are taken where the picture is split.
     let (coarse, marked) = if state.is_split() { (None, None) } else { (coarse, marked) };
     let at = |at| move |text| Caption::new(at, text);
@@ -74,6 +74,13 @@ fn showing(state: &State) -> String {
     });
     let (shown, total) = (format::count(c.shown as u64), format::count(c.total as u64));
     format!("Showing {shown} of {total}{beyond} boxes{}", colors.unwrap_or_default())
+}
+
+/// How far the film of the build is.
+fn filmed(state: &State) -> Option<String> {
+    let (film, at) = state.film_on_screen()?;
+    let [at, last] = [at, film.last()].map(|event| format::count(event.into()));
+    Some(format!("Reconstructed order, event {at} of {last}"))
 }
 
 /// What of a curve of errors is on the screen.
@@ -112,7 +119,9 @@ pub fn describe(state: &State) -> String {
         let overlay = &state.settings.overlay;
         let depth = match state.layout() {
             Some(Layout::Flat { .. }) | None => String::new(),
-            Some(_) if overlay.boxes && !overlay.leaves_only => format!(", boxes at depth {}", overlay.depth),
+            Some(_) if overlay.boxes && !overlay.leaves_only && state.film_on_screen().is_none() => {
+                format!(", boxes at depth {}", overlay.depth)
+            }
             Some(_) => String::new(),
         };
         let samples = state.picture.as_ref().map_or(0, |p| p.progress.samples);

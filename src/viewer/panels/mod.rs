@@ -9,6 +9,7 @@ pub mod check;
 pub mod decision;
 pub mod error_side;
 pub mod errors;
+pub mod film;
 pub mod findings;
 pub mod heat;
 pub mod help;

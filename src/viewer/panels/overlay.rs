@@ -1,6 +1,6 @@
 //! Which boxes and planes are drawn over the picture.
 
-use eframe::egui::{ComboBox, Slider, Ui};
+use eframe::egui::{Checkbox, ComboBox, Slider, Ui};
 
 use super::{Commands, heading};
 use crate::accel::cell::Layout;
@@ -17,6 +17,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     };
     let before = state.settings.overlay;
     let mut s = before;
+    // A film of the build says which cells are drawn.
+    let chosen = state.film_on_screen().is_none();
     match layout {
         Layout::Flat { resolution: [x, y, z], .. } => {
             ui.checkbox(&mut s.boxes, "Cells").on_hover_text("Boxes of the cells that hold triangles.");
@@ -27,7 +29,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         Layout::Hierarchy | Layout::SplitHierarchy | Layout::Partition | Layout::Nested { .. } => {
             let boxes = if layout.nests() { "Node boxes" } else { "Cells" };
             ui.checkbox(&mut s.boxes, boxes).on_hover_text("The box of each node at the chosen depth.");
-            ui.checkbox(&mut s.leaves_only, "Leaves only").on_hover_text("The boxes that hold triangles, at any depth.");
+            let leaves_only = Checkbox::new(&mut s.leaves_only, "Leaves only");
+            ui.add_enabled(chosen, leaves_only).on_hover_text("The boxes that hold triangles, at any depth.");
             if layout == Layout::Partition && has_split_planes(state) {
                 ui.checkbox(&mut s.planes, "Split planes").on_hover_text("The planes that divide the cells at the chosen depth.");
             }
@@ -36,19 +39,20 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
             let deepest = super::toolbar::deepest(state);
             let mut range = s.from_depth < s.depth;
-            if ui.checkbox(&mut range, "Range of depths").on_hover_text("Every level from the first to the chosen one.").changed()
-            {
+            let depths = ui.add_enabled(chosen, Checkbox::new(&mut range, "Range of depths"));
+            if depths.on_hover_text("Every level from the first to the chosen one.").changed() {
                 s.from_depth = if range { s.depth.saturating_sub(1) } else { s.depth };
                 if range && s.depth == 0 {
                     (s.from_depth, s.depth) = (0, deepest.min(1));
                 }
             }
             if range {
-                ui.add(Slider::new(&mut s.from_depth, 0..=s.depth).text("from"));
+                ui.add_enabled(chosen, Slider::new(&mut s.from_depth, 0..=s.depth).text("from"));
             }
         }
     }
-    ui.checkbox(&mut s.subtree_only, "Selected cell only").on_hover_text("Draw the boxes in the selected cell alone.");
+    let subtree_only = Checkbox::new(&mut s.subtree_only, "Selected cell only");
+    ui.add_enabled(chosen, subtree_only).on_hover_text("Draw the boxes in the selected cell alone.");
     ui.horizontal(|ui| {
         let label = ui.label("Colour");
         let combo = ComboBox::from_id_salt("box color").selected_text(s.color.label()).show_ui(ui, |ui| {

@@ -180,8 +180,9 @@ fn depth(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let deepest = deepest(state);
     let single = overlay.from_depth == overlay.depth;
     let slider = Slider::new(&mut overlay.depth, 0..=deepest).text("Depth");
-    let slider =
-        ui.add_enabled(!overlay.leaves_only, slider).on_hover_text("The level of the tree that is drawn: 0 is the root.");
+    let slider = ui
+        .add_enabled(!overlay.leaves_only && state.film_on_screen().is_none(), slider)
+        .on_hover_text("The level of the tree that is drawn: 0 is the root.");
     if slider.changed() {
         overlay.from_depth = if single { overlay.depth } else { overlay.from_depth.min(overlay.depth) };
         commands.push(Command::Overlay(overlay));

@@ -75,6 +75,7 @@ impl State {
         }
         self.shared.give_back(self.tree.outline.take());
         self.tree.clear();
+        self.close_film();
         self.causes = Causes::default();
         let (beside, kind, speed) = (std::mem::take(&mut self.rays.beside), self.rays.kind, self.rays.speed);
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });

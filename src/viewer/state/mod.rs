@@ -9,6 +9,7 @@ mod checking;
 mod dialog;
 mod erring;
 mod exploring;
+mod filming;
 mod finished;
 mod following;
 mod heating;
@@ -37,6 +38,7 @@ use super::checks::Checks;
 use super::command::Command;
 use super::dialogs::FileDialog;
 use super::errors::Errors;
+use super::filming::Filming;
 use super::gpu::Overlay;
 use super::graphics::Graphics;
 use super::history::{Choices, History, Kind};
@@ -109,6 +111,8 @@ pub struct State {
     pub tradeoffs: Tradeoffs,
     /// The cells of the shown structure, in the Structure workspace.
     pub tree: Tree,
+    /// The film of the shown structure's build, in the Structure workspace.
+    pub filming: Filming,
     /// Why rays are slow in the shown structure.
     pub causes: Causes,
     /// The second structure of a split picture.
@@ -274,6 +278,7 @@ impl State {
             errors: Errors::default(),
             tradeoffs: Tradeoffs::default(),
             tree: Tree::default(),
+            filming: Filming::default(),
             causes: Causes::default(),
             beside: Beside::default(),
             requested_beside: None,
@@ -374,6 +379,7 @@ impl State {
             || self.counting.is_some()
             || self.predicting.is_some()
             || self.is_exploring()
+            || self.filming.making.is_some()
             || self.rays.following.is_some()
             || self.brute.running.is_some()
             || self.is_tiling()
@@ -445,6 +451,11 @@ impl State {
             Command::OpenBelow(row) => self.open_below(row),
             Command::CloseTree => self.tree.close_all(),
             Command::TryPlane(plane) => self.try_plane(plane),
+            Command::MakeFilm => self.make_film(),
+            Command::CloseFilm => self.close_film(),
+            Command::FilmTo(at) => self.filming.go(at),
+            Command::PlayFilm(play) => self.filming.play(play, Instant::now()),
+            Command::FilmSpeed(speed) => self.filming.set_speed(speed, Instant::now()),
             Command::FindCauses => self.find_causes(),
             Command::CancelCauses => self.causes.running = None,
             Command::ShowCause(row) => self.show_cause(row),
@@ -475,7 +486,7 @@ impl State {
             Command::Instances(instances) => self.reopen(instances),
             Command::Workspace(workspace) => {
                 self.settings.workspace = workspace;
-                self.rays.playing = None;
+                (self.rays.playing, self.filming.playing) = (None, None);
                 if workspace == Workspace::Ray && self.rays.columns.is_empty() && self.rays.following.is_none() {
                     self.follow_again();
                 }
@@ -640,6 +651,7 @@ impl State {
         self.select(None);
         self.shared.give_back(self.tree.outline.take()); // it may be large
         self.tree.clear();
+        self.close_film();
         self.causes = Causes::default();
         self.rays.clear();
         self.shared.give_back(std::mem::take(&mut self.visiting));
@@ -700,6 +712,7 @@ impl State {
         self.advance_build();
         self.advance_causes();
         self.advance_outline();
+        self.advance_filming();
         self.advance_following();
         self.advance_brute_force();
         self.advance_picking();

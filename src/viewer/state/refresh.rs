@@ -121,15 +121,18 @@ impl State {
         let selected = self.picked.as_ref().and_then(Picked::selected).copied();
         let (needs_rows, outline) = (settings.subtree_only || settings.color.needs_rows(), self.tree.outline.clone());
         let visits = self.visiting.newest().filter(|_| settings.color == BoxColor::Visits);
+        let film = self.film_on_screen().map(|(film, at)| (Arc::clone(film), at));
+        let subtree_only = settings.subtree_only && film.is_none();
         let wanted = Wanted {
             settings,
             view,
             size_px: self.size_px,
             limit: self.graphics.comfortable_boxes(),
             // A row whose cell is on its way is not that of the selected cell.
-            top: selected.zip(self.tree.selected).filter(|_| settings.subtree_only && self.tree.selecting.is_none()),
+            top: selected.zip(self.tree.selected).filter(|_| subtree_only && self.tree.selecting.is_none()),
             numbered: needs_rows && outline.is_some(),
             counted: visits.as_ref().map(|(number, _)| *number),
+            film_at: film.as_ref().map(|film| film.1),
         };
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
         self.overlay_is_current = current;
@@ -137,9 +140,8 @@ impl State {
         if current || !seen || self.collecting.is_some() || self.is_measuring() {
             return;
         }
-        if let Ok(job) =
-            workers::collect(&self.shared, Arc::clone(&shown.accel), (outline, visits.map(|(_, visits)| visits)), wanted.clone())
-        {
+        let rows = (outline, visits.map(|(_, visits)| visits), film.map(|film| film.0));
+        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), rows, wanted.clone()) {
             self.collecting = Some((wanted, shown.key.clone(), job));
         }
     }
