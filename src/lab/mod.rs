@@ -9,6 +9,8 @@ mod counting;
 mod differing;
 mod division;
 mod estimate;
+#[cfg(feature = "plots")]
+pub mod everything;
 mod facts;
 pub mod findings;
 pub mod follow;
@@ -22,6 +24,8 @@ mod model_check;
 pub mod needs;
 #[cfg(feature = "peers")]
 pub mod peers;
+#[cfg(feature = "plots")]
+pub mod plot;
 mod quality;
 mod raster;
 mod rays;
@@ -51,7 +55,7 @@ pub use model_check::{CheckError, Checked, ModelCheck, check_model};
 pub use quality::{Quality, QualityOptions};
 pub use raster::{RasterRow, measure_with_raster};
 pub use rays::{PixelOrder, RayKind, RaySet, leaving};
-pub use report::{BuiltFacts, CostRow, Report, StructureRow};
+pub use report::{BuiltFacts, CostRow, Report, StructureRow, built};
 pub use sah_curve::{Chosen, SahCurves, of_node as sah_curves};
 pub use ties::rounding_explains;
 pub use timing::{Timing, is_tie};

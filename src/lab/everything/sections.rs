@@ -2,9 +2,9 @@
 
 use super::html::Page;
 use super::{Everything, Shown, said_of};
-use crate::cli::converge;
-use crate::cli::plot::{Curve, Panel, log_log};
+use crate::lab::converge;
 use crate::lab::format::{bytes, count, duration, number, or_missing, percent, rate, spread};
+use crate::lab::plot::{Curve, Panel, log_log};
 use crate::lab::tradeoffs::{Erring, front};
 use crate::lab::{Metric, RayKind, StructureRow};
 
