@@ -83,6 +83,8 @@ pub const SHORT_SLIDER: f32 = 12.0 * GRID;
 pub const MARK: f32 = 9.0;
 /// How often progress bars move.
 pub const PROGRESS_INTERVAL: std::time::Duration = std::time::Duration::from_millis(50);
+/// The height of bars in tables.
+pub const BAR: f32 = 3.0;
 /// How far round corners are rounded.
 const CORNER: u8 = 4;
 

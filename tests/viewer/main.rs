@@ -13,6 +13,7 @@ mod checking;
 mod comparing;
 mod errors;
 mod exploring;
+mod exporting;
 mod following;
 mod hands;
 mod layout;

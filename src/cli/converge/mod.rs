@@ -15,7 +15,7 @@ use super::output::{OutFile, print, print_json, warn};
 use super::structures::{BuildArgs, Many, each_once};
 use crate::lab::converge::{ConvergeCx, ConvergeError, ConvergeOptions, Outcome, Reference, Runner, csv, measure, panels};
 use crate::lab::everything::REFERENCE;
-use crate::lab::plot::{log_log, png_of};
+use crate::lab::plot::{png_of, svg_of};
 use crate::render::sampler::SamplerKind;
 use crate::render::{Job, LinearPicture, Mode};
 use crate::scene::CameraSpec;
@@ -163,7 +163,7 @@ fn write(outcome: &Outcome, folder: &Folder, cancel: &Cancel) -> Result<(), Fail
     folder.write("convergence.json", &json, cancel)?;
     folder.write("convergence.csv", csv(&outcome.convergence.curves).as_bytes(), cancel)?;
     for (name, panel) in panels(outcome) {
-        let svg = log_log(&[panel]).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
+        let svg = svg_of(&[panel]).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
         let png = png_of(&svg).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
         folder.write(&format!("{name}.svg"), svg.as_bytes(), cancel)?;
         folder.write(&format!("{name}.png"), &png, cancel)?;

@@ -6,7 +6,7 @@ use super::{
     ConvergeCx, ConvergeError, ConvergeOptions, Convergence, Curve, Point, REFERENCE_FACTOR, Reference, Runner, evaluate, render,
 };
 use crate::lab::format::count;
-use crate::lab::plot::{Curve as Plotted, Dot, Panel};
+use crate::lab::plot::{Curve as Plotted, Dot, Panel, Scale};
 use crate::lab::{MachineFacts, Metric, SceneFacts};
 use crate::render::sampler::SamplerKind;
 use crate::render::{Job, Transport};
@@ -129,6 +129,7 @@ pub fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
         curves: curves.iter().map(|curve| plotted(curve, of_secs)).collect(),
         guide: Some(("slope -1/2", |x| x.powf(-0.5))),
         labelled: false,
+        scale: Scale::Log,
     };
     [
         ("error-samples", panel("error against samples", "samples a pixel", false)),

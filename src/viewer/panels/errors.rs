@@ -6,12 +6,13 @@ use egui_extras::{Column, TableBuilder};
 use egui_plot::{Legend, Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points};
 
 use super::axes::log_log;
-use super::{Commands, empty, tradeoffs};
+use super::{Commands, empty, saves, scaling, tradeoffs};
 use crate::render::Mode;
 use crate::viewer::command::Command;
 use crate::viewer::errors::{Errors, Known, Live};
 use crate::viewer::format;
 use crate::viewer::marks;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -26,8 +27,11 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
                 commands.push(Command::ErrorPlot(other));
             }
         }
-        if plot != tradeoffs::Plot::Image {
-            return tradeoffs::controls(ui, state, commands);
+        saves::show(ui, What::of_plot(plot), state, commands);
+        match plot {
+            tradeoffs::Plot::Image => {}
+            tradeoffs::Plot::Scaling => return scaling::controls(ui, state, commands),
+            _ => return tradeoffs::controls(ui, state, commands),
         }
         let errors = &state.errors;
         let said = if errors.reference.is_some() { "RMSE against the reference" } else { "Estimated noise: no reference yet" };
@@ -38,7 +42,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| controls(ui, state, commands));
     });
-    if plot != tradeoffs::Plot::Image {
+    if plot == tradeoffs::Plot::Scaling {
+        scaling::show(ui, state);
+    } else if plot != tradeoffs::Plot::Image {
         tradeoffs::show(ui, state);
     } else if state.settings.mode != Mode::Path {
         ui.horizontal(|ui| {

@@ -19,6 +19,8 @@ pub mod palette;
 pub mod path;
 pub mod prediction;
 pub mod ray;
+pub mod saves;
+pub mod scaling;
 pub mod scene;
 pub mod selection;
 pub mod split;

@@ -59,8 +59,10 @@ impl State {
         (self.seen, self.counted) = (None, None);
         (self.cameras, self.choices) = (History::default(), History::default());
         (self.needs, self.needing) = (None, None);
+        self.exports.opened();
         self.timings = Timings::default();
         (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
+        (self.tradeoffs.growing, self.tradeoffs.scaling) = (None, Vec::new());
         self.checks.opened();
         let ray = self.rays.asked.filter(|_| reopened.is_some());
         if reopened.is_none() {
