@@ -26,6 +26,7 @@ mod overlay;
 mod pace;
 pub mod panels;
 pub mod pick;
+mod plots;
 pub mod rays;
 mod rays_over;
 mod rehearsal;

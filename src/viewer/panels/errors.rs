@@ -16,11 +16,15 @@ use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
+/// The least width at which controls stand in one row with the tabs.
+const WIDE: f32 = 200.0 * theme::GRID;
+
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     // The panel is as high as it was made, whatever is in it: the view above must not change its size with it.
     ui.take_available_space();
     let plot = state.tradeoffs.plot;
+    let wide = ui.available_width() >= WIDE;
     ui.horizontal(|ui| {
         for other in tradeoffs::Plot::ALL {
             if ui.selectable_label(other == plot, other.name()).on_hover_text(other.help()).clicked() {
@@ -28,20 +32,13 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
         saves::show(ui, What::of_plot(plot), state, commands);
-        match plot {
-            tradeoffs::Plot::Image => {}
-            tradeoffs::Plot::Scaling => return scaling::controls(ui, state, commands),
-            _ => return tradeoffs::controls(ui, state, commands),
+        if wide {
+            controls(ui, state, commands);
         }
-        let errors = &state.errors;
-        let said = if errors.reference.is_some() { "RMSE against the reference" } else { "Estimated noise: no reference yet" };
-        ui.label(RichText::new(said).small().color(Palette::in_ui(ui).dim)).on_hover_text(if errors.reference.is_some() {
-            "Root mean squared difference of linear red, green and blue; hollow points are below 4 times the reference's own noise."
-        } else {
-            "Root mean square of the standard errors of linear red, green and blue, from the samples' own variance."
-        });
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| controls(ui, state, commands));
     });
+    if !wide {
+        ui.horizontal(|ui| controls(ui, state, commands));
+    }
     if plot == tradeoffs::Plot::Scaling {
         scaling::show(ui, state);
     } else if plot != tradeoffs::Plot::Image {
@@ -62,7 +59,31 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
 }
 
+/// What the curves are: an error, or an estimate.
+fn measure_of(ui: &mut Ui, state: &State) {
+    let errors = &state.errors;
+    let said = if errors.reference.is_some() { "RMSE against the reference" } else { "Estimated noise: no reference yet" };
+    ui.label(RichText::new(said).small().color(Palette::in_ui(ui).dim)).on_hover_text(if errors.reference.is_some() {
+        "Root mean squared difference of linear red, green and blue; hollow points are below 4 times the reference's own noise."
+    } else {
+        "Root mean square of the standard errors of linear red, green and blue, from the samples' own variance."
+    });
+}
+
+/// What is chosen of the shown plot, and its button.
 fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    match state.tradeoffs.plot {
+        tradeoffs::Plot::Image => {
+            measure_of(ui, state);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| reference(ui, state, commands));
+        }
+        tradeoffs::Plot::Scaling => scaling::controls(ui, state, commands),
+        tradeoffs::Plot::Intersection | tradeoffs::Plot::Model => tradeoffs::controls(ui, state, commands),
+    }
+}
+
+/// Plots or a table, and the button that makes a reference.
+fn reference(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let errors = &state.errors;
     let mut as_table = errors.as_table;
     if ui.checkbox(&mut as_table, "Show as table").changed() {

@@ -46,7 +46,7 @@ pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
             let now = job.progress.snapshot();
             let text = format!("Measuring: {}", now.phase);
-            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(40.0 * theme::GRID).text(text));
+            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(ui.available_width().min(40.0 * theme::GRID)).text(text));
             return;
         }
         let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();

@@ -17,7 +17,7 @@ use crate::task::{Cancel, Progress};
 use crate::viewer::exports::{Export, Form, Writing};
 use crate::viewer::figure::Figure;
 use crate::viewer::workers::Shared;
-use crate::viewer::{figure, files, sheets};
+use crate::viewer::{figure, files, plots, sheets};
 
 /// Makes what is written.
 type Make = Box<dyn FnOnce(&Cancel) -> Result<Vec<u8>, String> + Send>;
@@ -79,7 +79,7 @@ impl State {
             Export::Table(what) => {
                 sheets::sheet(self, what).map(|sheet| Box::new(move |_: &Cancel| Ok(sheet.csv().into_bytes())) as Make)
             }
-            Export::Plot(what, form) => sheets::panels(self, what).map(|panels| {
+            Export::Plot(what, form) => plots::panels(self, what).map(|panels| {
                 Box::new(move |_: &Cancel| {
                     let svg = svg_of(&panels).map_err(|why| format!("Can't draw the plot: {why}."))?;
                     match form {
