@@ -252,6 +252,7 @@ impl Scaling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::task::{Budget, Cancel, Pool};
 
     #[test]
     fn a_power_law_has_its_power() {
@@ -265,5 +266,21 @@ mod tests {
         let found = Exponent::of(off).expect("four sizes");
         assert!((found.value + 0.02).abs() < 1e-12 && (found.error - (0.018f64 / 2.0 / 5.0).sqrt()).abs() < 1e-12, "{found:?}");
         assert!(Exponent::of([(1e3, 1.0)]).is_none() && Exponent::of([(1e3, 1.0), (1e4, f64::NAN)]).is_none());
+    }
+
+    #[test]
+    fn a_scene_is_made_in_each_size_and_one_of_a_fixed_size_is_cut_finer() {
+        let cx = LoadCx::new(Cancel::new(), Progress::new(), Budget::unlimited(), Pool::new("load", 1));
+        let counts = |sizes: &Sizes, model: &str| -> Vec<usize> {
+            let grown = sizes.of(model, &cx).expect("made");
+            grown.geometries.iter().map(|geometry| geometry.live_count()).collect()
+        };
+        let made = counts(&Sizes { from: 100, to: 1600, steps: 3 }, "builtin:soup");
+        assert_eq!(made, [100, 400, 1600]);
+        let own = counts(&Sizes { from: 100, to: 0, steps: 3 }, "builtin:soup?triangles=50");
+        assert_eq!(own, [50], "as it is");
+        let cut = counts(&Sizes { from: 1, to: 900, steps: 3 }, "builtin:soup?triangles=50");
+        assert_eq!(cut, [50, 200, 800]);
+        assert!(Sizes { from: 1, to: 9, steps: 2 }.of("builtin:nothing", &cx).is_err());
     }
 }

@@ -39,7 +39,7 @@ const STEP_PX: f32 = 3.0;
 /// Pieces of one line, at most.
 const PIECES: usize = 512;
 /// What is farther than the surface by less than this share is on it.
-const ON_SURFACE: f32 = 2e-3;
+const ON_SURFACE: f32 = 2e-4;
 
 impl Figure {
     /// The present view; `None` while there is no picture.
@@ -167,7 +167,8 @@ impl Figure {
         }
     }
 
-    /// Whether a surface of the picture is in front of a point.
+    /// Whether a surface of the picture is in front of a point, at its pixel and at those beside: on a slanted surface the depth
+    /// changes from one to the next, and a line that lies on it would come and go. The window draws by the same rule.
     fn is_hidden(&self, p: Vec3) -> bool {
         let at = self.on_figure(p) / Vec2::new(self.size[0] as f32, self.size[1] as f32);
         if !(0.0..1.0).contains(&at.x) || !(0.0..1.0).contains(&at.y) {
@@ -175,8 +176,13 @@ impl Figure {
         }
         let (columns, rows) = (self.picture.width as usize, self.picture.height as usize);
         let index = |share: f32, n: usize| floor_index(f64::from(share) * n as f64, n.saturating_sub(1));
-        let depth = self.picture.depth.get(index(at.y, rows) * columns + index(at.x, columns));
-        depth.is_some_and(|depth| p.z > depth * (1.0 + ON_SURFACE))
+        let (x, y) = (index(at.x, columns), index(at.y, rows));
+        let behind = |x: usize, y: usize| {
+            let depth = self.picture.depth.get(y.min(rows.saturating_sub(1)) * columns + x.min(columns.saturating_sub(1)));
+            depth.is_some_and(|depth| p.z > depth * (1.0 + ON_SURFACE))
+        };
+        let beside = [(x + 1, y), (x.saturating_sub(1), y), (x, y + 1), (x, y.saturating_sub(1))];
+        behind(x, y) && beside.into_iter().all(|(x, y)| behind(x, y))
     }
 
     /// Where a point that is seen stands on the figure, in pixels from the upper left corner.

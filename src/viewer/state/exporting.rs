@@ -132,26 +132,25 @@ impl State {
     /// What the report is of, and what its folder is called.
     fn subject(&self, amount: &Amount) -> Option<(Subject, String)> {
         let model = self.model.as_ref()?;
-        let entries = amount.entries();
+        let (entries, test) = (amount.entries(), self.settings.common_test());
         let ids: Vec<&str> = entries.iter().map(|entry| entry.id).collect();
         let structures: Vec<_> = entries.iter().map(|entry| (*entry, self.settings.params_of(entry))).collect();
-        let mut view = format!(" --camera \"{}\" --test {}", CameraSpec::written(&self.camera), self.settings.test.id());
-        for (entry, params) in &structures {
-            let usual = entry.defaults();
-            for ((param, value), _) in params.iter().zip(usual.iter()).filter(|(a, b)| a.1 != b.1) {
-                let set = format!(" --set {}={value}", param.id);
-                if !view.contains(&set) {
-                    view += &set;
-                }
+        let mut sets: Vec<String> = Vec::new();
+        for (param, value) in structures.iter().flat_map(|(_, params)| params.iter()).filter(|(p, v)| p.default() != *v) {
+            let set = format!(" --set {}={value}", param.id);
+            if !sets.contains(&set) {
+                sets.push(set);
             }
         }
+        let camera = CameraSpec::written(&self.camera);
+        let view = format!(" --camera \"{camera}\" --test {}{}", test.id(), sets.concat());
         let flat = model.geometry.placed().is_none();
         let subject = Subject {
             scene: Arc::clone(&model.scene),
             geometry: Arc::clone(&model.geometry),
             looks: Arc::clone(&model.looks),
             camera: self.camera,
-            test: self.settings.test,
+            test,
             commands: amount.commands(&model.scene.name, &ids.join(","), [&view, ""], flat),
             structures,
         };

@@ -37,7 +37,7 @@ impl State {
         let entries = Amount::of(false).entries();
         let of = |entry: &'static crate::accel::registry::Entry| Candidate { entry, params: self.settings.params_of(entry) };
         let candidates: Vec<Candidate> = entries.into_iter().map(of).collect();
-        let test = TestKind::ALL.into_iter().find(|test| *test == self.settings.test).unwrap_or_default();
+        let test = self.settings.common_test();
         let shared = self.shared.clone();
         self.building = None;
         let work = move |cancel: &Cancel, progress: &Progress| {

@@ -50,7 +50,6 @@ use super::workers::{
 };
 use super::workspace_file::WorkspaceFile;
 use crate::accel::{CellId, cell};
-use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
 use crate::render::sampler::SamplerKind;
@@ -641,8 +640,7 @@ impl State {
     /// Every structure over the open model, those that are kept and those to be built, and the present view.
     fn plan(&mut self) -> Option<Plan> {
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return None };
-        // All have the same test: not one that stands in brute force alone.
-        let test = TestKind::ALL.into_iter().find(|test| *test == self.settings.test).unwrap_or_default();
+        let test = self.settings.common_test();
         let wanted = crate::accel::registry::ALL.iter().map(|entry| Key { entry, params: self.settings.params_of(entry), test });
         let (mut kept, mut missing) = (Vec::new(), Vec::new());
         for key in wanted {
