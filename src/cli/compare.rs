@@ -16,8 +16,8 @@ use crate::accel::Accel;
 use crate::geometry::tri::TestKind;
 use crate::lab::format::count;
 use crate::lab::{
-    Contestant, Fairness, MeasureOptions, PixelOrder, Quality, RasterRow, RayKind, RaySet, Report, StructureRow, Timing, measure,
-    measure_with_raster,
+    Contestant, Fairness, MeasureOptions, PixelOrder, Quality, RasterRow, RayKind, RaySet, Report, StructureRow, Timing, built,
+    measure, measure_with_raster,
 };
 use crate::render::raster::Raster;
 use crate::render::{Job, Mode};
@@ -170,7 +170,7 @@ impl Race<'_> {
                     measure(self.contestants, &set, options, &self.cx.pool, &self.cx.cancel, progress)
                 })?
             };
-            for (row, timing) in quality::built(&mut report.structures).zip(timings) {
+            for (row, timing) in built(&mut report.structures).zip(timings) {
                 row.rays.insert(*kind, timing);
             }
             if self.args.how.fit_costs {

@@ -20,7 +20,6 @@ mod peers;
 #[cfg(not(feature = "peers"))]
 #[path = "no_peers.rs"]
 mod peers;
-mod plot;
 mod quality;
 mod rays;
 mod render;

@@ -8,7 +8,9 @@ use super::table::Table;
 use crate::accel::epo;
 use crate::accel::stats::SAH_FORMULA;
 use crate::lab::format::{MISSING, number, or_missing, percent};
-use crate::lab::{Contestant, CostRow, Enough, FitOptions, Quality, QualityOptions, RaySet, Report, StructureRow, fit_costs};
+use crate::lab::{
+    Contestant, CostRow, Enough, FitOptions, Quality, QualityOptions, RaySet, Report, StructureRow, built, fit_costs,
+};
 use crate::task::{Charge, Progress};
 
 #[derive(Debug, clap::Args)]
@@ -50,11 +52,6 @@ pub fn fit(
         row.costs = costs.zip(row.quality.as_ref()).map(|(costs, quality)| CostRow::of(costs, quality));
     }
     Ok(())
-}
-
-/// The rows of what could be built, which are the contestants, in their order.
-pub fn built(rows: &mut [StructureRow]) -> impl Iterator<Item = &mut StructureRow> {
-    rows.iter_mut().filter(|row| row.built.is_some())
 }
 
 /// A table of quality, and one of costs if they were fitted.

@@ -6,22 +6,21 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::args::{ModelArgs, SceneArgs, Size, seconds};
+use super::args::{ModelArgs, Size, seconds};
 use super::context::{Context, Model};
 use super::failure::Failure;
-use super::output::{OutFile, print, print_json};
-use super::plot::{Curve, Panel, log_log};
+use super::output::{OutFile, print, print_json, warn};
 use super::structures::{BuildArgs, Many};
 use super::table::{Table, facts};
 use super::{bar, rays};
 use crate::accel::BuildError;
-use crate::geometry::num::floor_index;
 use crate::geometry::tri::TestKind;
 use crate::lab::format::{MISSING, count, duration, number};
-use crate::lab::scaling::{BuildRounds, Candidate, Exponent, Point, Scaling, scaling};
+use crate::lab::plot::{Curve, Panel, Scale, svg_of};
+use crate::lab::scaling::{BuildRounds, Candidate, Exponent, Grown, Point, Scaling, Sizes, scaling};
 use crate::lab::{MachineFacts, MeasureOptions, RayKind};
-use crate::scene::builtin::{self, MAX_TRIANGLES, SCHEME};
-use crate::scene::{CameraSpec, Geometry, subdivide};
+use crate::scene::builtin::MAX_TRIANGLES;
+use crate::scene::{CameraSpec, Geometry};
 use crate::task::{Cancel, Progress};
 
 #[derive(Debug, clap::Args)]
@@ -110,7 +109,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         structures,
     };
     if let Some(file) = plot {
-        let svg = log_log(&panels(&outcome)).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
+        let svg = svg_of(&panels(&outcome)).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
         file.write(&cx.cancel, |out| out.write_all(svg.as_bytes()))?;
     }
     if args.json { print_json(&outcome) } else { print(&text(&outcome)) }
@@ -118,56 +117,18 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 
 /// The model in all sizes, the smallest first, and the largest as a whole.
 fn models(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failure> {
-    let model = &args.model.model;
-    let scales = |name: &str| builtin::all().iter().any(|s| s.id == name && !matches!(s.size, builtin::Size::Fixed(_)));
-    let (geometries, largest) = match model.strip_prefix(SCHEME) {
-        Some(name) if scales(name) => made(args, cx)?,
-        _ => subdivided(args, cx)?,
-    };
-    if geometries.len() < 2 {
-        let why = "there are not two sizes in that range: give --from and --to farther apart";
-        return Err(Failure::Input(format!("{model}: {why}")));
-    }
-    Ok((geometries, largest))
-}
-
-/// A built-in scene in each size; sizes that its construction makes one are taken once.
-fn made(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failure> {
-    let (from, to) = (args.from.min(args.to) as f64, args.to as f64);
-    let mut geometries: Vec<Arc<Geometry>> = Vec::new();
-    let mut largest = None;
-    for step in 0..args.steps {
-        let share = f64::from(step) / f64::from(args.steps - 1);
-        let triangles = floor_index((from * (to / from).powf(share)).round(), MAX_TRIANGLES);
-        let model = cx.load(&format!("{}?triangles={triangles}", args.model.model))?;
-        if geometries.last().is_none_or(|last| last.live_count() < model.geometry.live_count()) {
-            geometries.push(Arc::clone(&model.geometry));
-            largest = Some(model);
+    let (model, load_cx) = (&args.model.model, cx.load_cx());
+    let sizes = Sizes { from: args.from, to: args.to, steps: args.steps };
+    let Grown { geometries, scene } = bar::watch("open", &load_cx.progress, || sizes.of(model, &load_cx))?;
+    scene.warnings.iter().for_each(|warning| warn(&format!("{model}: {warning}")));
+    let geometry = match &geometries[..] {
+        [_, .., largest] => Arc::clone(largest),
+        _ => {
+            let why = "there are not two sizes in that range: give --from and --to farther apart";
+            return Err(Failure::Input(format!("{model}: {why}")));
         }
-    }
-    largest.map(|largest| (geometries, largest)).ok_or_else(|| Failure::Input("there is no size to make".to_owned()))
-}
-
-/// The model as it is, and cut finer and finer.
-fn subdivided(args: &Args, cx: &Context) -> Result<(Vec<Arc<Geometry>>, Model), Failure> {
-    let mut model = cx.load_whole(&args.model.model, SceneArgs::FLAT)?;
-    let mut geometries = vec![Arc::clone(&model.geometry)];
-    while model.scene.triangle_count() * 4 <= args.to {
-        let load_cx = cx.load_cx();
-        let finer = || {
-            let scene = subdivide(&model.scene, &load_cx).map_err(|reason| reason.of(&args.model.model))?;
-            let geometry = Geometry::new(&scene, &load_cx).map_err(|reason| reason.of(&args.model.model))?;
-            Ok::<_, Failure>(Model {
-                scene: Arc::new(scene),
-                geometry: Arc::new(geometry),
-                keep: load_cx.keep,
-                phases: Vec::new(),
-            })
-        };
-        model = bar::watch("subdivide", &load_cx.progress, finer)?;
-        geometries.push(Arc::clone(&model.geometry));
-    }
-    Ok((geometries, model))
+    };
+    Ok((geometries, Model { scene, geometry, keep: load_cx.keep, phases: Vec::new() }))
 }
 
 /// The times of builds and of rays.
@@ -184,6 +145,7 @@ fn panels(outcome: &Outcome) -> [Panel; 2] {
             curves: curves(|p| p.build_secs),
             guide: Some(("N log N", |n| n * n.ln())),
             labelled: false,
+            scale: Scale::Log,
         },
         Panel {
             title: format!("{}: {} rays, {threads} threads", outcome.model, outcome.rays.id()),
@@ -191,6 +153,7 @@ fn panels(outcome: &Outcome) -> [Panel; 2] {
             curves: curves(|p| p.ray_secs * 1e9),
             guide: Some(("log N", f64::ln)),
             labelled: false,
+            scale: Scale::Log,
         },
     ]
 }

@@ -12,13 +12,13 @@ use super::context::Context;
 use super::failure::Failure;
 use super::npy;
 use super::output::{OutFile, print, print_json};
-use super::plot::{Curve, Panel, log_log};
 use super::structures::{Many, each_once};
 use super::table::{Table, facts};
 use crate::accel::registry;
 use crate::geometry::tri::TestKind;
 use crate::lab::MachineFacts;
 use crate::lab::format::{count, number, percent};
+use crate::lab::plot::{Curve, Panel, Scale, svg_of};
 use crate::lab::stability::cases::{self, Case, Trial};
 use crate::lab::stability::{BoxRow, BoxTest, CaseRow, Options, Row, TestPrice, Verdict, check, check_case, prices, shrink};
 use crate::scene::Reason;
@@ -134,7 +134,7 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
 fn write(folder: &Path, outcome: &Outcome, options: &Options, cx: &Context) -> Result<(), Failure> {
     let report = serde_json::to_vec_pretty(outcome).map_err(|error| Failure::Other(error.into()))?;
     OutFile::at(&folder.join("report.json"))?.write(&cx.cancel, |out| out.write_all(&report))?;
-    let svg = log_log(&[panel(outcome)]).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
+    let svg = svg_of(&[panel(outcome)]).map_err(|error| Failure::Other(anyhow::anyhow!("{error}")))?;
     OutFile::at(&folder.join("error-time.svg"))?.write(&cx.cancel, |out| out.write_all(svg.as_bytes()))?;
     for case in &outcome.cases {
         for row in case.structures.iter().filter(|row| row.verdict == Verdict::Fail) {
@@ -198,6 +198,7 @@ fn panel(outcome: &Outcome) -> Panel {
         curves: ids.iter().map(curve).collect(),
         guide: None,
         labelled: false,
+        scale: Scale::Log,
     }
 }
 

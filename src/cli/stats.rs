@@ -10,16 +10,14 @@ use super::quality::QualityArgs;
 use super::structures::{BuildArgs, Many};
 use super::table::{Table, facts};
 use super::{bar, quality, rays};
-use crate::accel::BuildError;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::Entry;
-use crate::accel::stats::{SahWeights, Stats};
 use crate::geometry::num::floor_index;
 use crate::geometry::tri::TestKind;
 use crate::lab::format::{MISSING, bytes, count, duration, number};
-use crate::lab::{BuiltFacts, BuiltRow, Contestant, Quality, QualityOptions, RayKind, Report, StructureRow};
+use crate::lab::{BuiltFacts, BuiltRow, Contestant, QualityOptions, RayKind, Report, StructureRow};
 use crate::scene::CameraSpec;
-use crate::task::{Cancel, Progress};
+use crate::task::Cancel;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -85,24 +83,9 @@ pub fn row(
     model: &Model,
     cx: &Context,
 ) -> Result<(StructureRow, Option<BuiltRow>), Failure> {
-    let mut row = StructureRow::new(entry.id, params, test);
-    match cx.build(entry, model, test, params) {
-        Ok(built) => {
-            let (accel, weights) = (built.accel.as_ref(), SahWeights::of(params));
-            let stats = Stats::of_structure(accel, weights, &cx.cancel)?;
-            let title = format!("quality of {}", entry.id);
-            let with = (&cx.pool, &cx.budget, &cx.cancel);
-            let quality = || Quality::of(accel, &stats, weights, options, with);
-            row.quality = Some(bar::watch(&title, &Progress::new(), quality)?);
-            row.built = Some(BuiltFacts::of(&built, stats));
-            Ok((row, Some(built)))
-        }
-        Err(BuildError::Cancelled(_)) => Err(Failure::Cancelled),
-        Err(error) => {
-            row.error = Some(error.to_string());
-            Ok((row, None))
-        }
-    }
+    let build_cx = cx.build_cx();
+    let of = || StructureRow::of(entry, test, (params, options), &model.geometry, &build_cx);
+    Ok(bar::watch(entry.id, &build_cx.progress, of)?)
 }
 
 fn text(report: &Report) -> String {

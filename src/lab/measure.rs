@@ -50,6 +50,25 @@ impl Fairness {
             Self::Best => "each at its best",
         }
     }
+
+    /// Both, in the order of menus.
+    pub const ALL: [Self; 2] = [Self::LikeForLike, Self::Best];
+
+    /// The same in a few words.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::LikeForLike => "Like for like",
+            Self::Best => "Each at its best",
+        }
+    }
+
+    /// What it means, in a sentence.
+    pub const fn help(self) -> &'static str {
+        match self {
+            Self::LikeForLike => "Plain code, one ray at a time, the same triangle test: what is compared is the structure.",
+            Self::Best => "Each structure in the fastest form there is of it: batches of rays, the processor's own instructions.",
+        }
+    }
 }
 
 /// How long and on which terms to measure.

@@ -10,6 +10,8 @@ mod counting;
 mod differing;
 mod division;
 mod estimate;
+#[cfg(feature = "plots")]
+pub mod everything;
 mod facts;
 pub mod film;
 pub mod findings;
@@ -24,6 +26,8 @@ mod model_check;
 pub mod needs;
 #[cfg(feature = "peers")]
 pub mod peers;
+#[cfg(feature = "plots")]
+pub mod plot;
 mod quality;
 mod raster;
 mod rays;
@@ -31,6 +35,7 @@ mod report;
 mod sah_curve;
 mod sample;
 pub mod scaling;
+mod sheet;
 pub mod stability;
 pub mod statistics;
 mod tally;
@@ -57,8 +62,9 @@ pub use model_check::{CheckError, Checked, ModelCheck, check_model};
 pub use quality::{Quality, QualityOptions};
 pub use raster::{RasterRow, measure_with_raster};
 pub use rays::{PixelOrder, RayKind, RaySet, leaving};
-pub use report::{BuiltFacts, CostRow, Report, StructureRow};
+pub use report::{BuiltFacts, CostRow, Report, StructureRow, built};
 pub use sah_curve::{Chosen, SahCurves, of_node as sah_curves};
+pub use sheet::{Field, Sheet};
 pub use ties::rounding_explains;
 pub use timing::{Timing, is_tie};
 pub use uncut::{Enough, UncutLines};

@@ -2,18 +2,21 @@
 
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use super::building::BuiltRow;
+use super::building::{BuiltRow, build_timed};
 use super::costs::Costs;
 use super::facts::{MachineFacts, SceneFacts};
-use super::quality::Quality;
+use super::quality::{Quality, QualityOptions};
 use super::rays::RayKind;
 use super::timing::Timing;
-use crate::accel::MemoryPart;
 use crate::accel::params::{ParamValues, Value};
-use crate::accel::stats::Stats;
+use crate::accel::registry::Entry;
+use crate::accel::stats::{SahWeights, Stats};
+use crate::accel::{BuildCx, BuildError, MemoryPart};
 use crate::geometry::tri::TestKind;
-use crate::task::Phase;
+use crate::scene::Geometry;
+use crate::task::{Cancelled, Phase};
 
 /// Everything that `stats` and `compare` say.
 #[derive(Clone, Debug, Serialize)]
@@ -55,6 +58,11 @@ impl Report {
         let alone = self.structures.iter().filter(|other| other.id == row.id).count() < 2;
         if alone { row.id.clone() } else { format!("{} {}", row.id, row.test.id()) }
     }
+}
+
+/// The rows of what could be built, which are the contestants, in their order.
+pub fn built(rows: &mut [StructureRow]) -> impl Iterator<Item = &mut StructureRow> {
+    rows.iter_mut().filter(|row| row.built.is_some())
 }
 
 /// Fitted costs, and what follows from them.
@@ -134,5 +142,33 @@ impl StructureRow {
     pub fn new(id: &str, params: &ParamValues, test: TestKind) -> Self {
         let params = params.iter().map(|(param, value)| (param.id, value)).collect();
         Self { id: id.to_owned(), params, test, built: None, error: None, quality: None, costs: None, rays: BTreeMap::new() }
+    }
+
+    /// Builds a structure and looks at it. One that cannot be built is a row with the reason.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if asked to stop.
+    pub fn of(
+        entry: &Entry,
+        test: TestKind,
+        (params, options): (&ParamValues, &QualityOptions),
+        geometry: &Arc<Geometry>,
+        cx: &BuildCx,
+    ) -> Result<(Self, Option<BuiltRow>), Cancelled> {
+        let mut row = Self::new(entry.id, params, test);
+        match build_timed(entry, geometry, test, params, cx) {
+            Ok(built) => {
+                let (accel, weights) = (built.accel.as_ref(), SahWeights::of(params));
+                let stats = Stats::of_structure(accel, weights, &cx.cancel)?;
+                row.quality = Some(Quality::of(accel, &stats, weights, options, (&cx.pool, &cx.budget, &cx.cancel))?);
+                row.built = Some(BuiltFacts::of(&built, stats));
+                Ok((row, Some(built)))
+            }
+            Err(BuildError::Cancelled(cancelled)) => Err(cancelled),
+            Err(error) => {
+                row.error = Some(error.to_string());
+                Ok((row, None))
+            }
+        }
     }
 }

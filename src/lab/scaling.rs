@@ -13,8 +13,9 @@ use super::statistics::{half_iqr, median};
 use crate::accel::params::ParamValues;
 use crate::accel::registry::Entry;
 use crate::accel::{Accel, BuildCx, BuildError};
+use crate::geometry::num::floor_index;
 use crate::geometry::tri::TestKind;
-use crate::scene::Geometry;
+use crate::scene::{self, Geometry, LoadCx, LoadError, Scene, builtin, subdivide};
 use crate::task::Progress;
 
 /// One structure over models of growing size.
@@ -71,6 +72,76 @@ impl Exponent {
         let Line { slope, slope_error, .. } = line(&logs)?;
         Some(Self { value: slope, error: slope_error })
     }
+}
+
+/// Which sizes a model is taken in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// The fewest triangles of a scene that is made in each size.
+    pub from: u64,
+    /// The most triangles.
+    pub to: u64,
+    /// Sizes of a scene that is made in each, at least two, the ratio from one to the next being the same.
+    pub steps: u32,
+}
+
+/// A model in growing sizes.
+#[derive(Clone, Debug)]
+pub struct Grown {
+    /// Its triangles in each, the smallest first.
+    pub geometries: Vec<Arc<Geometry>>,
+    /// The largest as a whole.
+    pub scene: Arc<Scene>,
+}
+
+impl Sizes {
+    /// Makes a built-in scene that is named without a size in each; anything else is taken as it is, and cut finer and finer,
+    /// each triangle into four. There may be fewer than two in the range.
+    ///
+    /// # Errors
+    /// Asked to stop, or the model can't be opened or does not fit.
+    pub fn of(&self, model: &str, cx: &LoadCx) -> Result<Grown, LoadError> {
+        let scales = |name: &str| builtin::all().iter().any(|s| s.id == name && !matches!(s.size, builtin::Size::Fixed(_)));
+        if model.strip_prefix(builtin::SCHEME).is_some_and(scales) { self.made(model, cx) } else { self.subdivided(model, cx) }
+    }
+
+    /// Sizes that the construction makes one are taken once.
+    fn made(&self, model: &str, cx: &LoadCx) -> Result<Grown, LoadError> {
+        let (from, to) = (self.from.min(self.to) as f64, self.to as f64);
+        let sized = |step: u32| {
+            let share = f64::from(step) / f64::from(self.steps.max(2) - 1);
+            let triangles = floor_index((from * (to / from).powf(share)).round(), builtin::MAX_TRIANGLES);
+            flat(&format!("{model}?triangles={triangles}"), cx)
+        };
+        let (scene, geometry) = sized(0)?;
+        let mut grown = Grown { geometries: vec![geometry], scene };
+        for step in 1..self.steps.max(2) {
+            let (scene, geometry) = sized(step)?;
+            if grown.geometries.last().is_none_or(|last| last.live_count() < geometry.live_count()) {
+                grown.geometries.push(geometry);
+                grown.scene = scene;
+            }
+        }
+        Ok(grown)
+    }
+
+    fn subdivided(&self, model: &str, cx: &LoadCx) -> Result<Grown, LoadError> {
+        let whole = |scene: &Scene| Geometry::new(scene, cx).map(Arc::new).map_err(|reason| reason.of(model));
+        let mut scene = scene::open(model, cx)?;
+        let mut geometries = vec![whole(&scene)?];
+        while scene.triangle_count() * 4 <= self.to {
+            scene = subdivide(&scene, cx).map_err(|reason| reason.of(model))?;
+            geometries.push(whole(&scene)?);
+        }
+        Ok(Grown { geometries, scene: Arc::new(scene) })
+    }
+}
+
+/// A model without instances.
+fn flat(model: &str, cx: &LoadCx) -> Result<(Arc<Scene>, Arc<Geometry>), LoadError> {
+    let mut scene = scene::open(model, cx)?;
+    let geometry = scene.gather(true, cx).map_err(|reason| reason.of(model))?;
+    Ok((Arc::new(scene), Arc::new(geometry)))
 }
 
 /// A structure to be built, and how.
@@ -181,6 +252,7 @@ impl Scaling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::task::{Budget, Cancel, Pool};
 
     #[test]
     fn a_power_law_has_its_power() {
@@ -194,5 +266,21 @@ mod tests {
         let found = Exponent::of(off).expect("four sizes");
         assert!((found.value + 0.02).abs() < 1e-12 && (found.error - (0.018f64 / 2.0 / 5.0).sqrt()).abs() < 1e-12, "{found:?}");
         assert!(Exponent::of([(1e3, 1.0)]).is_none() && Exponent::of([(1e3, 1.0), (1e4, f64::NAN)]).is_none());
+    }
+
+    #[test]
+    fn a_scene_is_made_in_each_size_and_one_of_a_fixed_size_is_cut_finer() {
+        let cx = LoadCx::new(Cancel::new(), Progress::new(), Budget::unlimited(), Pool::new("load", 1));
+        let counts = |sizes: &Sizes, model: &str| -> Vec<usize> {
+            let grown = sizes.of(model, &cx).expect("made");
+            grown.geometries.iter().map(|geometry| geometry.live_count()).collect()
+        };
+        let made = counts(&Sizes { from: 100, to: 1600, steps: 3 }, "builtin:soup");
+        assert_eq!(made, [100, 400, 1600]);
+        let own = counts(&Sizes { from: 100, to: 0, steps: 3 }, "builtin:soup?triangles=50");
+        assert_eq!(own, [50], "as it is");
+        let cut = counts(&Sizes { from: 1, to: 900, steps: 3 }, "builtin:soup?triangles=50");
+        assert_eq!(cut, [50, 200, 800]);
+        assert!(Sizes { from: 1, to: 9, steps: 2 }.of("builtin:nothing", &cx).is_err());
     }
 }

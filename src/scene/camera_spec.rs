@@ -20,6 +20,16 @@ impl CameraSpec {
         spec.map_or_else(|| scene.first_camera(geometry.world_bounds(), aspect), |spec| spec.in_scene(scene))
     }
 
+    /// A camera as it is written.
+    pub fn written(camera: &Camera) -> String {
+        let point = |p: Vec3| format!("{},{},{}", p.x, p.y, p.z);
+        let projection = match camera.projection {
+            Projection::Perspective { fov_y } => format!("fov {}", fov_y.to_degrees()),
+            Projection::Orthographic { height } => format!("height {height}"),
+        };
+        format!("eye {} target {} up {} {projection}", point(camera.eye), point(camera.target), point(camera.up))
+    }
+
     /// The camera it describes in a scene.
     pub fn in_scene(&self, scene: &Scene) -> Camera {
         let projection = self.projection.unwrap_or(Projection::Perspective { fov_y: Camera::DEFAULT_FOV_Y });
@@ -86,6 +96,8 @@ mod tests {
         let scene = Scene { up: Vec3::Y, ..Scene::default() };
         let camera = "eye 1,0,0 target 0,0,0 height 2".parse::<CameraSpec>().expect("well formed").in_scene(&scene);
         assert_eq!((camera.up, camera.projection), (Vec3::Y, Projection::Orthographic { height: 2.0 }));
+        let again: CameraSpec = CameraSpec::written(&camera).parse().expect("well formed");
+        assert_eq!(again.in_scene(&Scene::default()), camera);
     }
 
     #[test]

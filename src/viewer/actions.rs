@@ -5,13 +5,17 @@ use std::borrow::Cow;
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
+use super::exports::{Export, Form};
 use super::panels::{self, toolbar};
 use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, SectionSettings, ThemeChoice, Workspace};
+use super::sheets::What;
 use super::state::State;
+use super::timings::Column;
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::accel::registry;
 use crate::geometry::Axis;
+use crate::lab::Fairness;
 use crate::render::sampler::SamplerKind;
 use crate::render::{HeatRays, Mode};
 use crate::scene::{Section, builtin};
@@ -188,7 +192,27 @@ fn file(list: &mut List, state: &State) {
         }
     }
     list.add("Save workspace…", Command::SaveWorkspace).key(SAVE).if_possible(state.model.is_some());
+    exports(list, state);
     list.add("Quit", Command::Quit).key(QUIT);
+}
+
+/// What can be taken away.
+fn exports(list: &mut List, state: &State) {
+    let free = state.shown.is_some() && !state.is_measuring() && !state.is_checking();
+    for (name, quick) in [("Export report…", true), ("Export thorough report…", false)] {
+        list.add(name, Command::Export(Export::Report { quick })).if_possible(free);
+    }
+    let seen = state.picture.is_some();
+    list.add("Save figure…", Command::Export(Export::Figure)).if_possible(seen);
+    list.add("Save picture…", Command::Export(Export::Picture)).if_possible(seen);
+    for what in What::ALL {
+        let (name, there) = (what.name(), what.is_there(state));
+        list.add(format!("Save table: {name}…"), Command::Export(Export::Table(what))).if_possible(there);
+        for form in [Form::Svg, Form::Png].into_iter().filter(|_| what.has_plot()) {
+            let ending = form.ending().to_uppercase();
+            list.add(format!("Save plot as {ending}: {name}…"), Command::Export(Export::Plot(what, form))).if_possible(there);
+        }
+    }
 }
 
 fn view(list: &mut List, state: &State) {
@@ -330,6 +354,14 @@ fn measure(list: &mut List, state: &State) {
     list.add("Time the tiles of the view", Command::TimeTiles).if_possible(free && state.tiles.shown);
     list.add("Look for causes of slow rays", Command::FindCauses).if_possible(free);
     list.add("Measure quality against its cost", Command::MeasureTradeoffs).if_possible(free);
+    list.add("Measure time against triangles", Command::MeasureScaling).if_possible(free);
+    for fairness in Fairness::ALL {
+        let other = fairness != state.terms_of_timings.fairness && state.measuring.is_none();
+        list.add(format!("Measure: {}", fairness.name().to_lowercase()), Command::Fairness(fairness)).if_possible(other);
+    }
+    for column in Column::ALL {
+        list.add(format!("Sort timings by {}", column.name()), Command::SortTimings(column));
+    }
     list.add("Measure what leaving out saves", Command::MeasureNeeds).if_possible(free);
     list.add("Make a reference", Command::MakeReference).if_possible(free && state.settings.mode == Mode::Path);
     list.add("Check this model", Command::CheckModel).if_possible(free);

@@ -2,13 +2,15 @@
 //! command, and [`super::state::State::carry_out`] does it afterwards.
 
 use super::checks::Cell;
+use super::exports::Export;
 use super::model::Instances;
 use super::settings::{Navigation, OverlaySettings, SectionSettings, ThemeChoice, Workspace};
+use super::timings::Column;
 use super::tradeoffs::{Goodness, Miss, Plot};
 use crate::accel::params::ParamValues;
 use crate::geometry::Axis;
 use crate::geometry::tri::TestKind;
-use crate::lab::{PixelRect, RayKind};
+use crate::lab::{Fairness, PixelRect, RayKind};
 use crate::render::sampler::SamplerKind;
 use crate::render::{HeatRays, Mode, Range, Tone};
 use crate::scene::Camera;
@@ -127,6 +129,10 @@ pub enum Command {
     Measure,
     /// Stop timing.
     CancelMeasure,
+    /// On which terms structures are timed from now on.
+    Fairness(Fairness),
+    /// Sort the timings by a column; the other way round if they are sorted by it.
+    SortTimings(Column),
     /// Work out what is predicted of rays in the shown structure: somebody looks at it.
     Predict,
     /// Measure what leaving out saves for the open model.
@@ -172,6 +178,10 @@ pub enum Command {
     MeasureTradeoffs,
     /// Stop that.
     CancelTradeoffs,
+    /// Measure time against the number of triangles.
+    MeasureScaling,
+    /// Stop that.
+    CancelScaling,
     /// Put away the message.
     Dismiss,
     /// The memory budget in MiB, or half of the machine.
@@ -196,6 +206,10 @@ pub enum Command {
     Divider(f32),
     /// Save the whole state of the window.
     SaveWorkspace,
+    /// Save the report, a table, a plot, the figure or the picture.
+    Export(Export),
+    /// Stop making the report.
+    CancelReport,
     /// Keep the present view, with what is selected.
     AddBookmark,
     /// Go back to one that was kept.

@@ -13,6 +13,11 @@ pub trait FileDialog {
 
     /// The same for a file to be written, with the name that it would have.
     fn save(&self, name: &str, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>>;
+
+    /// The same for a folder to put files into; those who know one way to ask ask in that way.
+    fn folder(&self, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+        self.pick(wake)
+    }
 }
 
 /// The system's own dialog.
@@ -26,8 +31,19 @@ impl FileDialog for SystemDialog {
     }
 
     fn save(&self, name: &str, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
-        let dialog = rfd::AsyncFileDialog::new().set_title("Save the workspace").set_file_name(name);
-        answer(dialog.add_filter("Workspaces", &[ENDING]).save_file(), wake)
+        let ending = name.rsplit_once('.').map_or(ENDING, |(_, ending)| ending);
+        let (title, kind) = match ending {
+            "csv" => ("Save the table", "Tables"),
+            "svg" => ("Save the figure", "Figures"),
+            "png" => ("Save the picture", "Pictures"),
+            _ => ("Save the workspace", "Workspaces"),
+        };
+        let dialog = rfd::AsyncFileDialog::new().set_title(title).set_file_name(name);
+        answer(dialog.add_filter(kind, &[ending]).save_file(), wake)
+    }
+
+    fn folder(&self, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+        answer(rfd::AsyncFileDialog::new().set_title("Where to put the report").pick_folder(), wake)
     }
 }
 

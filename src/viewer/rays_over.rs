@@ -1,9 +1,13 @@
 //! Draws marked rays over the view: where they run, and where they end.
 
+use std::borrow::Cow;
+
 use eframe::egui::{Color32, Painter, Pos2, Rect, Stroke, pos2};
 
 use super::checks::{Mark, MarkKind};
 use super::gpu::View;
+use super::settings::Workspace;
+use super::state::State;
 use super::theme::{self, Marker, Palette};
 use crate::geometry::Space;
 use glam::{DVec3, Vec3};
@@ -27,7 +31,17 @@ pub fn paint(painter: &Painter, rect: Rect, marks: &[Mark], view: &View, space: 
     }
 }
 
-const fn color(kind: MarkKind, palette: &Palette) -> Color32 {
+/// The rays that are marked in the present workspace.
+pub fn marks(state: &State) -> Cow<'_, [Mark]> {
+    match state.settings.workspace {
+        Workspace::Check => Cow::Borrowed(&state.checks.marks),
+        Workspace::Ray => Cow::Owned(state.rays.marks()),
+        Workspace::View | Workspace::Structure | Workspace::Compare => Cow::Borrowed(&[]),
+    }
+}
+
+/// The colour of a marked ray.
+pub const fn color(kind: MarkKind, palette: &Palette) -> Color32 {
     match kind {
         MarkKind::Wrong => palette.fail,
         MarkKind::Rounded => palette.warn,
@@ -38,23 +52,28 @@ const fn color(kind: MarkKind, palette: &Palette) -> Color32 {
 
 /// Both ends of what is seen of a ray, in points of the window; `None` if nothing is.
 fn in_view(mark: &Mark, view: &View, space: &Space, rect: Rect) -> Option<[Pos2; 2]> {
+    Some(before_eye(ends(mark, view, space)?, view)?.map(|p| on_screen(p, view, rect)))
+}
+
+/// Both ends of a ray, as [`View::seen`] says; `None` if they are nowhere.
+pub fn ends(mark: &Mark, view: &View, space: &Space) -> Option<[Vec3; 2]> {
     let (o, d) = (mark.ray.origin.as_dvec3(), mark.ray.dir.as_dvec3());
     let at = |t: f64| o + d * t;
     let from = f64::from(mark.ray.tmin);
     let to = if mark.t.is_finite() { f64::from(mark.t) } else { f64::from(mark.ray.tmax).min(far(o, d, space)) };
-    let [a, b] = [at(from), at(to)].map(|p| view.seen(space.point(p.as_vec3())));
-    if !a.is_finite() || !b.is_finite() {
-        return None;
-    }
+    let both = [at(from), at(to)].map(|p| view.seen(space.point(p.as_vec3())));
+    both.iter().all(|end| end.is_finite()).then_some(both)
+}
+
+/// The part of a segment that is before the eye, its ends as [`View::seen`] says.
+pub fn before_eye([a, b]: [Vec3; 2], view: &View) -> Option<[Vec3; 2]> {
     let [near, _] = view.range;
-    let (a, b) = match (a.z >= near, b.z >= near) {
-        (false, false) => return None,
-        (true, true) => (a, b),
-        // Only what is before the eye is seen.
-        (false, true) => (b + (a - b) * ((b.z - near) / (b.z - a.z)), b),
-        (true, false) => (a, a + (b - a) * ((a.z - near) / (a.z - b.z))),
-    };
-    Some([a, b].map(|p| on_screen(p, view, rect)))
+    match (a.z >= near, b.z >= near) {
+        (false, false) => None,
+        (true, true) => Some([a, b]),
+        (false, true) => Some([b + (a - b) * ((b.z - near) / (b.z - a.z)), b]),
+        (true, false) => Some([a, a + (b - a) * ((a.z - near) / (a.z - b.z))]),
+    }
 }
 
 /// Beyond this t a ray has left the scene, and some way more.

@@ -198,6 +198,7 @@ impl Screenshot {
             (Plot::Image, step) if step < BESIDE.len() => Some(Command::Structure(BESIDE[step])),
             (Plot::Image, step) if step == BESIDE.len() => Some(Command::MakeReference),
             (Plot::Image, _) => None,
+            (Plot::Scaling, 0) => Some(Command::MeasureScaling),
             (_, 0) => Some(Command::MeasureTradeoffs),
             _ => None,
         };

@@ -273,6 +273,11 @@ impl Settings {
         values
     }
 
+    /// The triangle test where all structures have the same: not one that stands in brute force alone.
+    pub fn common_test(&self) -> TestKind {
+        TestKind::ALL.into_iter().find(|test| *test == self.test).unwrap_or_default()
+    }
+
     /// The triangle test of a structure: the chosen one, or the default if it does not have that.
     pub fn test_of(&self, entry: &Entry) -> TestKind {
         entry.tests().find(|test| *test == self.test).unwrap_or_default()

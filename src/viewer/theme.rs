@@ -93,6 +93,8 @@ pub const HANDLE: f32 = 6.0;
 pub const MARK: f32 = 9.0;
 /// How often progress bars move.
 pub const PROGRESS_INTERVAL: std::time::Duration = std::time::Duration::from_millis(50);
+/// The height of bars in tables.
+pub const BAR: f32 = 3.0;
 /// How far round corners are rounded.
 const CORNER: u8 = 4;
 

@@ -3,7 +3,9 @@
 use std::sync::mpsc::Receiver;
 
 use super::workers::Trading;
+use crate::job::Job;
 use crate::lab::RayKind;
+use crate::lab::scaling::Scaling;
 use crate::lab::tradeoffs::{Erring, TradeoffRow};
 
 /// Everything of it.
@@ -13,6 +15,10 @@ pub struct Tradeoffs {
     pub rows: Vec<TradeoffRow>,
     /// The measurement, while it runs, and where it puts rows.
     pub running: Option<(Trading, Receiver<TradeoffRow>)>,
+    /// Time against the number of triangles, a row for each structure.
+    pub scaling: Vec<Scaling>,
+    /// That, on its way.
+    pub growing: Option<Growing>,
     /// Which plot is shown.
     pub plot: Plot,
     /// What of intersections is drawn.
@@ -20,6 +26,9 @@ pub struct Tradeoffs {
     /// What of structures is drawn.
     pub goodness: Goodness,
 }
+
+/// Time against the number of triangles, on its way: nothing if it was stopped, or why there is none, in words for the user.
+pub type Growing = Job<Result<Vec<Scaling>, String>>;
 
 /// The plots of the workspace.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,11 +40,13 @@ pub enum Plot {
     Intersection,
     /// How good structures are against the time of their build.
     Model,
+    /// Time against the number of triangles.
+    Scaling,
 }
 
 impl Plot {
     /// All, in the order of tabs.
-    pub const ALL: [Self; 3] = [Self::Image, Self::Intersection, Self::Model];
+    pub const ALL: [Self; 4] = [Self::Image, Self::Intersection, Self::Model, Self::Scaling];
 
     /// The name on the command line.
     pub const fn id(self) -> &'static str {
@@ -43,6 +54,7 @@ impl Plot {
             Self::Image => "image",
             Self::Intersection => "intersection",
             Self::Model => "model",
+            Self::Scaling => "scaling",
         }
     }
 
@@ -52,6 +64,7 @@ impl Plot {
             Self::Image => "Image",
             Self::Intersection => "Intersection",
             Self::Model => "Model",
+            Self::Scaling => "Scaling",
         }
     }
 
@@ -61,6 +74,7 @@ impl Plot {
             Self::Image => "The error of the path traced picture against samples and seconds.",
             Self::Intersection => "How tests of triangles and boxes err on hard rays of this view, against the time of a ray.",
             Self::Model => "How good each structure is, against the time of its build; and how far predictions are off.",
+            Self::Scaling => "How the time of a build and of a ray grows with the number of triangles.",
         }
     }
 }
@@ -70,7 +84,7 @@ impl std::str::FromStr for Plot {
 
     fn from_str(s: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|plot| plot.id() == s);
-        known.ok_or_else(|| format!("there is no plot '{s}': use image, intersection or model"))
+        known.ok_or_else(|| format!("there is no plot '{s}': use image, intersection, model or scaling"))
     }
 }
 

@@ -28,7 +28,7 @@ use crate::lab::needs::{Kept, NeedsReport};
 use crate::lab::stability::{self, CaseRow, cases};
 use crate::lab::tradeoffs::{TradeoffRow, Tradeoffs, Variant};
 use crate::lab::{
-    self, CheckError, Checked, Contestant, Costs, Enough, FitOptions, ImageErrors, MeasureOptions, ModelCheck, Quality,
+    self, CheckError, Checked, Contestant, Costs, Enough, Fairness, FitOptions, ImageErrors, MeasureOptions, ModelCheck, Quality,
     QualityOptions, RasterRow, RayKind, RaySet, SahCurves, Timing, Visits, fit_costs, measure, measure_with_raster, sah_curves,
 };
 use crate::render::{self, Looks, Picture, Shot, Tone};
@@ -332,6 +332,8 @@ pub struct Measured {
     pub costs: Vec<Option<Costs>>,
     /// Structures that could not be built, and why.
     pub failed: Vec<NotBuilt>,
+    /// The terms of the timings.
+    pub fairness: Fairness,
     /// The view, and its size in pixels.
     pub view: Option<(Camera, [u32; 2])>,
 }
@@ -374,19 +376,19 @@ fn build_missing(
 }
 
 /// Starts measuring; the renderer is kept from running meanwhile.
-pub fn measure_all(shared: &Shared, plan: Plan, pause: Pauses) -> std::io::Result<Measuring> {
+pub fn measure_all(shared: &Shared, plan: Plan, fairness: Fairness, pause: Pauses) -> std::io::Result<Measuring> {
     let Shared { pool, budget, .. } = shared.clone();
     Job::spawn("measure", shared.waker(), move |cancel, progress| {
         pause.wait();
         let (view, size_px) = (plan.view.clone(), plan.size_px);
         let cx = BuildCx::new(cancel.clone(), progress.clone(), pool.clone(), budget);
         let (built, failed) = build_missing(plan.kept, plan.missing, view.accel.geometry(), &cx)?;
-        let mut measured = Measured { built, failed, view: Some((view.camera, size_px)), ..Measured::default() };
+        let mut measured = Measured { built, failed, fairness, view: Some((view.camera, size_px)), ..Measured::default() };
         let [width, height] = size_px;
         let rays = RaySet::generate(RayKind::Primary, &view, width, height, &pool, cancel)?;
         let contestant = |b: &Built| Contestant { id: b.key.entry.id.to_owned(), accel: Arc::clone(&b.accel) };
         let contestants: Vec<Contestant> = measured.built.iter().map(contestant).collect();
-        let options = MeasureOptions::default();
+        let options = MeasureOptions { fairness, ..MeasureOptions::default() };
         if view.accel.levels().is_some() {
             // The rasteriser draws flattened triangles alone.
             measured.timings = measure(&contestants, &rays, &options, &pool, cancel, progress)?;

@@ -1,15 +1,14 @@
 //! The whole state of the window in one file: what is open, from where and how it is looked at, what is selected, which ray is
 //! followed, and the views that were kept. What belongs to the person rather than to the model (look, size, memory) is not in it.
 
-use std::io::Write;
 use std::path::Path;
 
+use super::files;
 use super::model::{self, Instances};
 use super::settings::Settings;
 use super::state::Bookmark;
 use crate::lab::RayKind;
 use crate::scene::Camera;
-use crate::sys::{folder_of, temporary_in};
 
 /// The ending of such files.
 pub const ENDING: &str = "boxwood";
@@ -92,12 +91,8 @@ impl WorkspaceFile {
     /// # Errors
     /// Why it can't be written, in words for the user.
     pub fn write(&self, path: &Path) -> Result<(), String> {
-        let fail = |why: std::io::Error| format!("Can't save {}: {why}. Choose another folder.", path.display());
-        let text = serde_json::to_vec_pretty(self).map_err(|why| fail(why.into()))?;
-        let mut file = temporary_in(folder_of(path)).map_err(fail)?;
-        file.write_all(&text).and_then(|()| file.flush()).map_err(fail)?;
-        file.persist(path).map_err(|why| fail(why.error))?;
-        Ok(())
+        let text = serde_json::to_vec_pretty(self).map_err(|why| format!("Can't save {}: {why}.", path.display()))?;
+        files::write(path, &text)
     }
 }
 

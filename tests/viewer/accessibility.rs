@@ -65,7 +65,7 @@ fn everything_that_can_be_used_has_a_name() {
 fn tab_reaches_the_main_controls() {
     let mut w = Window::lecture();
     let mut reached = BTreeSet::new();
-    for _ in 0..72 {
+    for _ in 0..120 {
         w.key(Modifiers::NONE, Key::Tab);
         let focused = w.harness.query_by(|n| n.is_focused() && n.role() != Role::Window);
         reached.extend(focused.and_then(|n| n.accesskit_node().label()).map(|l| l.split('.').next().unwrap_or(&l).to_owned()));

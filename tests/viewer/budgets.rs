@@ -135,3 +135,28 @@ fn what_was_left_out_is_told_in_two() {
     assert!(c.w.says(&first.why));
     c.within(2);
 }
+
+#[test]
+fn the_report_is_exported_in_three() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().to_path_buf();
+    let mut c = Clicks::fresh(|s| (s.answer, s.alone) = (Some(path), true));
+    c.on(Role::Button, "File");
+    c.on(Role::Button, "Export report…");
+    c.w.until("its start", |s| s.exports.report.is_some());
+    // It takes longer than anything else here.
+    let start = std::time::Instant::now();
+    while c.w.state().exports.report.is_some() && start.elapsed().as_secs() < 300 {
+        c.w.step();
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert_eq!(c.w.state().error, None);
+    assert!(c.w.state().exports.said.as_ref().is_some_and(|said| said.starts_with("Report written to ")));
+    let report = folder.path().join("teapot report");
+    let page = std::fs::read_to_string(report.join("index.html")).expect("the page");
+    assert!(page.contains("builtin:teapot?triangles=1000") && page.contains("<svg") && page.trim_end().ends_with("</html>"));
+    for name in ["report.json", "structures.csv", "convergence.csv", "reference.exr"] {
+        assert!(report.join(name).is_file(), "{name}");
+    }
+    c.within(3);
+}

@@ -14,6 +14,7 @@ mod comparing;
 mod errors;
 mod exploring;
 mod filming;
+mod exporting;
 mod following;
 mod hands;
 mod heat;

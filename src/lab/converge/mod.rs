@@ -2,12 +2,16 @@
 //! 1, 2, 4, … samples is measured against a reference that none of them made.
 
 mod curve;
+#[cfg(feature = "plots")]
+mod outcome;
 mod reference;
 mod run;
 mod tables;
 mod witness;
 
 pub use curve::{Curve, Point, REFERENCE_FACTOR, Slope};
+#[cfg(feature = "plots")]
+pub use outcome::{Outcome, csv, measure, panels};
 pub use reference::{Reference, ReferenceFacts, SEED};
 pub use run::{ConvergeCx, ConvergeError, ConvergeOptions, Rendered, Runner, render};
 pub use tables::{BreakEven, EqualError, EqualTime, Tables};

@@ -7,11 +7,12 @@ use eframe::egui::{
 };
 
 use super::node::hidden;
-use super::{Commands, fact};
+use super::{Commands, fact, saves};
 use crate::geometry::Axis;
 use crate::lab::{Division, SahCurves};
 use crate::viewer::command::Command;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -35,6 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, curves: &SahCurves, commands: &mut Comma
     }
     outcome(ui, curves);
     others(ui, curves, commands);
+    saves::show(ui, What::Division, state, commands);
 }
 
 /// The plane that is tried, or the axis that one would be tried on.

@@ -6,39 +6,42 @@ use egui_extras::{Column, TableBuilder};
 use egui_plot::{Legend, Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points};
 
 use super::axes::log_log;
-use super::{Commands, empty, tradeoffs};
+use super::{Commands, empty, saves, scaling, tradeoffs};
 use crate::render::Mode;
 use crate::viewer::command::Command;
 use crate::viewer::errors::{Errors, Known, Live};
 use crate::viewer::format;
 use crate::viewer::marks;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
+
+/// The least width at which controls stand in one row with the tabs.
+const WIDE: f32 = 200.0 * theme::GRID;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     // The panel is as high as it was made, whatever is in it: the view above must not change its size with it.
     ui.take_available_space();
     let plot = state.tradeoffs.plot;
+    let wide = ui.available_width() >= WIDE;
     ui.horizontal(|ui| {
         for other in tradeoffs::Plot::ALL {
             if ui.selectable_label(other == plot, other.name()).on_hover_text(other.help()).clicked() {
                 commands.push(Command::ErrorPlot(other));
             }
         }
-        if plot != tradeoffs::Plot::Image {
-            return tradeoffs::controls(ui, state, commands);
+        saves::show(ui, What::of_plot(plot), state, commands);
+        if wide {
+            controls(ui, state, commands);
         }
-        let errors = &state.errors;
-        let said = if errors.reference.is_some() { "RMSE against the reference" } else { "Estimated noise: no reference yet" };
-        ui.label(RichText::new(said).small().color(Palette::in_ui(ui).dim)).on_hover_text(if errors.reference.is_some() {
-            "Root mean squared difference of linear red, green and blue; hollow points are below 4 times the reference's own noise."
-        } else {
-            "Root mean square of the standard errors of linear red, green and blue, from the samples' own variance."
-        });
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| controls(ui, state, commands));
     });
-    if plot != tradeoffs::Plot::Image {
+    if !wide {
+        ui.horizontal(|ui| controls(ui, state, commands));
+    }
+    if plot == tradeoffs::Plot::Scaling {
+        scaling::show(ui, state);
+    } else if plot != tradeoffs::Plot::Image {
         tradeoffs::show(ui, state);
     } else if state.settings.mode != Mode::Path {
         ui.horizontal(|ui| {
@@ -56,7 +59,31 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
 }
 
+/// What the curves are: an error, or an estimate.
+fn measure_of(ui: &mut Ui, state: &State) {
+    let errors = &state.errors;
+    let said = if errors.reference.is_some() { "RMSE against the reference" } else { "Estimated noise: no reference yet" };
+    ui.label(RichText::new(said).small().color(Palette::in_ui(ui).dim)).on_hover_text(if errors.reference.is_some() {
+        "Root mean squared difference of linear red, green and blue; hollow points are below 4 times the reference's own noise."
+    } else {
+        "Root mean square of the standard errors of linear red, green and blue, from the samples' own variance."
+    });
+}
+
+/// What is chosen of the shown plot, and its button.
 fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    match state.tradeoffs.plot {
+        tradeoffs::Plot::Image => {
+            measure_of(ui, state);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| reference(ui, state, commands));
+        }
+        tradeoffs::Plot::Scaling => scaling::controls(ui, state, commands),
+        tradeoffs::Plot::Intersection | tradeoffs::Plot::Model => tradeoffs::controls(ui, state, commands),
+    }
+}
+
+/// Plots or a table, and the button that makes a reference.
+fn reference(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let errors = &state.errors;
     let mut as_table = errors.as_table;
     if ui.checkbox(&mut as_table, "Show as table").changed() {

@@ -9,6 +9,7 @@ use crate::viewer::actions::{
     QUIT, REDO, SAME_SIZE, SAVE, SMALLER, UNDO, key_of, scaled,
 };
 use crate::viewer::command::Command;
+use crate::viewer::exports::Export;
 use crate::viewer::format;
 use crate::viewer::settings::{Navigation, ThemeChoice, Workspace};
 use crate::viewer::state::State;
@@ -87,6 +88,8 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.checks.checking.is_some(), Command::CancelCheck),
         (state.errors.making.is_some(), Command::CancelReference),
         (state.tradeoffs.running.is_some(), Command::CancelTradeoffs),
+        (state.tradeoffs.growing.is_some(), Command::CancelScaling),
+        (state.exports.report.is_some(), Command::CancelReport),
         (state.presenting, Command::Present(false)),
         // In another workspace nobody sees that it runs.
         (state.checks.running.is_some() && state.settings.workspace == Workspace::Check, Command::CancelLab),
@@ -133,8 +136,36 @@ fn file(ui: &mut Ui, state: &State, commands: &mut Commands) {
         commands.push(Command::SaveWorkspace);
     }
     ui.separator();
+    exports(ui, state, commands);
+    ui.separator();
     if item(ui, "Quit", &QUIT) {
         commands.push(Command::Quit);
+    }
+}
+
+/// What can be taken away.
+fn exports(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let free = state.shown.is_some() && !state.is_measuring() && !state.is_checking();
+    let items = [
+        (
+            "Export report…",
+            "Measure everything on this model and put it on one page, with its data: under a minute.",
+            free,
+            Export::Report { quick: true },
+        ),
+        (
+            "Export thorough report…",
+            "The same with more structures, rays and samples: some minutes.",
+            free,
+            Export::Report { quick: false },
+        ),
+        ("Save figure…", "The view with its boxes and rays as lines (SVG).", state.picture.is_some(), Export::Figure),
+        ("Save picture…", "The traced picture alone (PNG).", state.picture.is_some(), Export::Picture),
+    ];
+    for (text, help, possible, export) in items {
+        if ui.add_enabled(possible, egui::Button::new(text)).on_hover_text(help).clicked() {
+            commands.push(Command::Export(export));
+        }
     }
 }
 

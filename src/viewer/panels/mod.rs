@@ -23,6 +23,8 @@ pub mod palette;
 pub mod path;
 pub mod prediction;
 pub mod ray;
+pub mod saves;
+pub mod scaling;
 pub mod scene;
 pub mod section;
 pub mod selection;

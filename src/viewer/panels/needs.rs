@@ -2,11 +2,12 @@
 
 use eframe::egui::{CollapsingHeader, ProgressBar, RichText, Ui};
 
-use super::{Commands, fact};
+use super::{Commands, fact, saves};
 use crate::lab::needs::FeatureRow;
 use crate::scene::Finding;
 use crate::viewer::command::Command;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::Palette;
 
@@ -21,6 +22,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
             if !used {
                 measure(ui, state, commands);
+                saves::show(ui, What::Needs, state, commands);
             }
         });
     }

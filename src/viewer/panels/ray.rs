@@ -2,7 +2,7 @@
 
 use eframe::egui::{Button, ComboBox, DragValue, Grid, Key, Label, RichText, Slider, TextEdit, Ui};
 
-use super::{Commands, empty, fact, heading, steps};
+use super::{Commands, empty, fact, heading, saves, steps};
 use crate::accel::Step;
 use crate::accel::registry;
 use crate::lab::RayKind;
@@ -10,6 +10,7 @@ use crate::lab::follow::{Followed, from_text, to_text};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::rays::{KINDS, MOST};
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::Palette;
 
@@ -23,6 +24,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         present(ui, state);
         heading(ui, "Work");
         work(ui, state);
+        saves::show(ui, What::Steps, state, commands);
     }
     heading(ui, "Beside");
     beside(ui, state, commands);

@@ -5,7 +5,7 @@ use eframe::egui::{
 };
 use eframe::egui::{Painter, Vec2, pos2, vec2};
 
-use super::{Commands, empty, heading};
+use super::{Commands, empty, heading, saves};
 use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
 use crate::lab::stability::cases::{self, Case};
@@ -13,6 +13,7 @@ use crate::lab::stability::{Row, Verdict};
 use crate::viewer::checks::Cell;
 use crate::viewer::command::Command;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Marker, Palette};
 
@@ -22,6 +23,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         heading(ui, "Stability");
         if !state.checks.cases.is_empty() {
             ui.label(RichText::new(said(state)).small().color(Palette::in_ui(ui).dim));
+            saves::show(ui, What::Stability, state, commands);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| button(ui, state, commands));
     });

@@ -1,12 +1,13 @@
 //! What the shown structure is like, in figures.
 
-use eframe::egui::{CollapsingHeader, RichText, Ui};
+use eframe::egui::{Align, CollapsingHeader, Layout, RichText, Ui};
 
-use super::{Commands, bars, empty, fact, findings, heading, needs, prediction};
+use super::{Commands, bars, empty, fact, findings, heading, needs, prediction, saves};
 use crate::accel::stats::{LEAF_SIZES, Stats};
 use crate::viewer::format;
 use crate::viewer::kept::Built;
 use crate::viewer::marks;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -20,6 +21,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.horizontal(|ui| {
         marks::dot(ui, built.key.entry.family);
         ui.label(RichText::new(built.key.entry.name).heading());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| saves::show(ui, What::Statistics, state, commands));
     });
     build_time(ui, built);
     let Some(stats) = &built.stats else {

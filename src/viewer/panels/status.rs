@@ -1,14 +1,15 @@
 //! The bar at the bottom: samples, pace, the window's own time, what is going on.
 
-use eframe::egui::{Align, Layout, RichText, Ui};
+use eframe::egui::{Align, Label, Layout, RichText, Ui};
 
 use super::Commands;
+use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::state::State;
 use crate::viewer::theme::Palette;
 
 /// Draws the bar. `ui_secs` is what the last frame took of the window's thread.
-pub fn show(ui: &mut Ui, state: &State, ui_secs: Option<f64>, _: &mut Commands) {
+pub fn show(ui: &mut Ui, state: &State, ui_secs: Option<f64>, commands: &mut Commands) {
     ui.horizontal(|ui| {
         let dim = Palette::in_ui(ui).dim;
         if let Some(p) = state.picture.as_ref().map(|p| p.progress) {
@@ -27,8 +28,13 @@ pub fn show(ui: &mut Ui, state: &State, ui_secs: Option<f64>, _: &mut Commands) 
                 .on_hover_text("Time the last frame took on the window's own thread.");
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if state.exports.report.is_some() && ui.button("Cancel the report").clicked() {
+                commands.push(Command::CancelReport);
+            }
             if let Some(doing) = doing(state) {
                 ui.label(doing);
+            } else if let Some(said) = &state.exports.said {
+                ui.add(Label::new(said.as_str()).truncate()).on_hover_text(said.as_str());
             }
         });
     });
@@ -37,6 +43,10 @@ pub fn show(ui: &mut Ui, state: &State, ui_secs: Option<f64>, _: &mut Commands) 
 /// What is going on, in a few words.
 fn doing(state: &State) -> Option<String> {
     let share = |fraction: Option<f32>| fraction.map(|f| format!(" {}", format::percent(f.into()))).unwrap_or_default();
+    if let Some(job) = &state.exports.report {
+        let now = job.progress.snapshot();
+        return Some(format!("Report: {}{}", now.phase, share(now.fraction)));
+    }
     if let Some(job) = &state.measuring {
         let now = job.progress.snapshot();
         return Some(format!("Measuring{}", share(now.fraction)));

@@ -1,41 +1,44 @@
-//! The table of timings, one row a structure, on the same rays, and the same view rasterised.
+//! The table of timings, one row a structure, on the same rays, and the same view rasterised. A click on a column sorts.
 
-use eframe::egui::{self, Align, Layout, ProgressBar, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Align, Button, ComboBox, Layout, ProgressBar, Rect, RichText, ScrollArea, Ui, pos2};
 use egui_extras::{Column, TableBuilder, TableRow};
 
-use super::{Commands, heading};
+use super::{Commands, heading, saves};
 use crate::accel::registry::{Entry, Family};
-use crate::lab::{RasterRow, Timing};
+use crate::lab::{Fairness, RasterRow, Timing};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::marks;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
-use crate::viewer::timings::Row;
-
-/// The columns, with their units and what they mean.
-const COLUMNS: [(&str, &str); 6] = [
-    ("Build", "Wall-clock time of the build."),
-    ("Bytes", "Memory of the structure alone."),
-    ("1 spp", "Time to trace one camera ray for each pixel of this view: the median of the rounds."),
-    ("Mrays/s", "Millions of camera rays a second, all on the same rays; ± is half the interquartile range."),
-    ("Nodes/ray", "Nodes or cells that a ray visits, on average."),
-    ("Tests/ray", "Triangles that a ray is tested against, on average."),
-];
+use crate::viewer::timings::{Column as By, Row, secs_of_sample};
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.horizontal(|ui| {
         heading(ui, "Timings");
-        ui.label(
-            RichText::new("Like for like: plain code, one ray at a time, the same triangle test")
-                .small()
-                .color(Palette::in_ui(ui).dim),
-        )
-        .on_hover_text("CPU timings; counts carry over to a GPU only for the same tree and traversal.");
+        terms(ui, state, commands);
+        saves::show(ui, What::Timings, state, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| button(ui, state, commands));
     });
-    ScrollArea::horizontal().show(ui, |ui| table(ui, state));
+    ScrollArea::horizontal().show(ui, |ui| table(ui, state, commands));
+}
+
+/// On which terms structures are timed.
+fn terms(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let now = state.terms_of_timings.fairness;
+    ui.add_enabled_ui(state.measuring.is_none(), |ui| {
+        let combo = ComboBox::from_id_salt("terms").selected_text(now.name()).show_ui(ui, |ui| {
+            for fairness in Fairness::ALL {
+                if ui.selectable_label(fairness == now, fairness.name()).on_hover_text(fairness.help()).clicked() {
+                    commands.push(Command::Fairness(fairness));
+                }
+            }
+        });
+        let help = format!("{} CPU timings; counts carry over to a GPU only for the same tree and traversal.", now.help());
+        combo.response.accessible_name("Terms of the comparison").on_hover_text(help);
+    });
 }
 
 fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -61,35 +64,56 @@ fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
     if state.timings.view.is_some_and(|(camera, size)| camera != state.camera || size != state.size_px) {
         ui.label(RichText::new("measured on another view").small().color(Palette::in_ui(ui).warn));
+    } else if state.timings.view.is_some() && state.timings.fairness != state.terms_of_timings.fairness {
+        let said = format!("measured: {}", state.timings.fairness.name().to_lowercase());
+        ui.label(RichText::new(said).small().color(Palette::in_ui(ui).warn));
     }
 }
 
-fn table(ui: &mut Ui, state: &State) {
+fn table(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let mut table = TableBuilder::new(ui).striped(true).vscroll(true).cell_layout(Layout::right_to_left(Align::Center));
     table = table.column(Column::exact(28.0 * theme::GRID));
-    for _ in COLUMNS {
+    for _ in 1..By::ALL.len() {
         table = table.column(Column::remainder().at_least(20.0 * theme::GRID));
     }
+    let raster = state.timings.raster.as_ref().map(|raster| raster.mrays_per_sec);
+    let most = state.timings.fastest().map(|t| t.mrays_per_sec).into_iter().chain(raster).fold(0.0, f64::max);
     table
         .header(theme::ROW, |mut header| {
-            header.col(|ui| {
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.label(RichText::new("Structure").small()));
-            });
-            for (name, help) in COLUMNS {
+            for column in By::ALL {
                 header.col(|ui| {
-                    ui.label(RichText::new(name).small()).on_hover_text(help);
+                    let layout = if column == By::Structure { Layout::left_to_right } else { Layout::right_to_left };
+                    ui.with_layout(layout(Align::Center), |ui| head(ui, state, column, commands));
                 });
             }
         })
         .body(|mut body| {
-            for (entry, row) in state.timings.rows() {
-                body.row(theme::ROW, |mut cells| cells_of(&mut cells, state, entry, &row));
+            for (entry, row) in state.timings.sorted(&state.terms_of_timings) {
+                body.row(theme::ROW, |mut cells| cells_of(&mut cells, state, (entry, &row), most));
             }
-            body.row(theme::ROW, |mut cells| raster(&mut cells, state.timings.raster.as_ref()));
+            body.row(theme::ROW, |mut cells| raster_row(&mut cells, state.timings.raster.as_ref(), most));
         });
 }
 
-fn cells_of(cells: &mut TableRow<'_, '_>, state: &State, entry: &Entry, row: &Row) {
+/// The name of a column, which sorts by it.
+fn head(ui: &mut Ui, state: &State, column: By, commands: &mut Commands) {
+    let terms = &state.terms_of_timings;
+    let (sign, order) = match (terms.column == column, terms.grows()) {
+        (false, _) => ("", ""),
+        (true, true) => (" \u{2b06}", ", ascending"),
+        (true, false) => (" \u{2b07}", ", descending"),
+    };
+    let text = RichText::new(format!("{}{sign}", column.name())).small();
+    // In the order in which they are listed, rows are not said to be sorted.
+    let plain = column == By::Structure && !terms.reversed;
+    let (text, order) = if plain { (RichText::new(column.name()).small(), "") } else { (text, order) };
+    let button = ui.add(Button::new(text).frame(false)).on_hover_text(format!("{} Click to sort by it.", column.help()));
+    if button.accessible_name(format!("Sort by {}{order}", column.name())).clicked() {
+        commands.push(Command::SortTimings(column));
+    }
+}
+
+fn cells_of(cells: &mut TableRow<'_, '_>, state: &State, (entry, row): (&Entry, &Row), most: f64) {
     cells.col(|ui| {
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             marks::dot(ui, entry.family);
@@ -103,9 +127,10 @@ fn cells_of(cells: &mut TableRow<'_, '_>, state: &State, entry: &Entry, row: &Ro
     value(cells, row.build_secs.map(format::duration), not_built);
     value(cells, row.bytes.map(format::bytes), not_built);
     let timing = row.timing.as_ref();
-    value(cells, timing.map(one_sample), why);
+    value(cells, timing.map(|t| format::duration(secs_of_sample(t))), why);
     cells.col(|ui| {
         let Some(t) = timing else { return missing(ui, why) };
+        bar(ui, t, most, entry.family);
         let fastest = state.timings.is_fastest(t);
         let tie = fastest && state.timings.fastest().is_some_and(|f| f.id != t.id);
         let text = format!("{}{}", rate(t), if tie { " tie" } else { "" });
@@ -117,20 +142,33 @@ fn cells_of(cells: &mut TableRow<'_, '_>, state: &State, entry: &Entry, row: &Ro
     value(cells, timing.map(|t| format::number(t.prims_per_ray)), why);
 }
 
-/// The time of one sample for each pixel. A capped structure traced a part of the rays: scaled up to
-/// all of them.
-fn one_sample(t: &Timing) -> String {
-    format::duration(t.secs_median * t.of as f64 / t.rays.max(1) as f64)
-}
-
 /// Rays a second and their spread.
 fn rate(t: &Timing) -> String {
-    let spread = t.mrays_per_sec * t.secs_half_iqr / t.secs_median.max(f64::MIN_POSITIVE);
-    format!("{} ±{}", format::number(t.mrays_per_sec), format::number(spread))
+    format!("{} ±{}", format::number(t.mrays_per_sec), format::number(spread_of(t)))
+}
+
+/// The spread of the rays a second.
+fn spread_of(t: &Timing) -> f64 {
+    t.mrays_per_sec * t.secs_half_iqr / t.secs_median.max(f64::MIN_POSITIVE)
+}
+
+/// A bar at the foot of a cell: rays a second as a share of the most, with their spread at its end.
+fn bar(ui: &Ui, t: &Timing, most: f64, family: Family) {
+    let cell = ui.max_rect();
+    let at = |rate: f64| cell.left() + cell.width() * (rate / most.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0) as f32;
+    let rect = Rect::from_min_max(pos2(cell.left(), cell.bottom() - theme::BAR), pos2(at(t.mrays_per_sec), cell.bottom()));
+    let (painter, spread) = (ui.painter(), spread_of(t));
+    painter.rect_filled(rect, 0.0, marks::color(ui, family));
+    let ends = at(t.mrays_per_sec - spread)..=at(t.mrays_per_sec + spread);
+    let text = Palette::in_ui(ui).text;
+    painter.hline(ends.clone(), rect.center().y, (1.0, text));
+    for end in [*ends.start(), *ends.end()] {
+        painter.vline(end, rect.y_range(), (1.0, text));
+    }
 }
 
 /// The row of the rasteriser, which builds nothing and visits no nodes.
-fn raster(cells: &mut TableRow<'_, '_>, row: Option<&RasterRow>) {
+fn raster_row(cells: &mut TableRow<'_, '_>, row: Option<&RasterRow>, most: f64) {
     let drawn = row.map(|row| {
         let (covered, overdraw) = (format::count(row.covered), format::number(row.overdraw));
         let edge = format::count(row.differing.edge);
@@ -146,9 +184,10 @@ fn raster(cells: &mut TableRow<'_, '_>, row: Option<&RasterRow>) {
     let (none, timing) = ("A rasteriser has no structure.", row.map(RasterRow::timing));
     value(cells, None, none);
     value(cells, None, none);
-    value(cells, timing.as_ref().map(one_sample), "Not measured. Press Measure.");
+    value(cells, timing.as_ref().map(|t| format::duration(secs_of_sample(t))), "Not measured. Press Measure.");
     cells.col(|ui| {
         let Some(t) = &timing else { return missing(ui, "Not measured. Press Measure.") };
+        bar(ui, t, most, Family::Brute);
         ui.label(rate(t)).on_hover_text(&help);
     });
     value(cells, None, none);

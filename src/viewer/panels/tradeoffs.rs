@@ -46,7 +46,7 @@ pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
             let now = job.progress.snapshot();
             let text = format!("Measuring: {}", now.phase);
-            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(40.0 * theme::GRID).text(text));
+            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(ui.available_width().min(40.0 * theme::GRID)).text(text));
             return;
         }
         let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
@@ -58,11 +58,15 @@ pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
 }
 
 /// A point, with what it is called.
-struct Spot {
+pub struct Spot {
+    /// The id of its structure.
+    pub structure: &'static str,
+    /// What it is called.
+    pub name: String,
+    /// Where it is.
+    pub at: (f64, f64),
     family: Family,
-    name: String,
     marker: MarkerShape,
-    at: (f64, f64),
 }
 
 /// Names written beside the pointer, at most.
@@ -70,12 +74,14 @@ const NAMES: usize = 4;
 /// Where nothing is wrong there is no logarithm: drawn below the least that is.
 const NONE: f64 = 1.0;
 
-fn spots(state: &State) -> Vec<Spot> {
+/// The points of a plot.
+pub fn spots(state: &State, plot: Plot) -> Vec<Spot> {
     let trade = &state.tradeoffs;
     let mut spots = Vec::new();
     for row in &trade.rows {
-        let Some(family) = registry::find(&row.structure).map(|entry| entry.family) else { continue };
-        if trade.plot == Plot::Intersection {
+        let Some(entry) = registry::find(&row.structure) else { continue };
+        let (family, structure) = (entry.family, entry.id);
+        if plot == Plot::Intersection {
             for test in &row.tests {
                 let marker = match test.test {
                     TestKind::Fast => MarkerShape::Cross,
@@ -83,19 +89,28 @@ fn spots(state: &State) -> Vec<Spot> {
                     _ => MarkerShape::Circle,
                 };
                 let (name, error) = (format!("{} {}", row.name, test.test.id()), trade.miss.of(&test.erring).max(NONE));
-                spots.push(Spot { family, name, marker, at: (test.erring.ns, error) });
+                spots.push(Spot { structure, family, name, marker, at: (test.erring.ns, error) });
             }
             for test in &row.boxes {
                 let (name, error) = (format!("boxes {}", test.test.id()), trade.miss.of(&test.erring).max(NONE));
-                spots.push(Spot { family, name, marker: MarkerShape::Square, at: (test.erring.ns, error) });
+                spots.push(Spot { structure, family, name, marker: MarkerShape::Square, at: (test.erring.ns, error) });
             }
         } else if let Some(goodness) = trade.goodness.of(row).filter(|_| family != Family::Brute) {
             let marker = marker_of(family);
-            spots.push(Spot { family, name: row.name.clone(), marker, at: (row.build_secs, goodness) });
+            spots.push(Spot { structure, family, name: row.name.clone(), marker, at: (row.build_secs, goodness) });
         }
     }
     spots.retain(|spot| spot.at.0 > 0.0 && spot.at.1 > 0.0 && spot.at.0.is_finite() && spot.at.1.is_finite());
     spots
+}
+
+/// What is along the axes of a plot.
+pub const fn axes(state: &State, plot: Plot) -> [&'static str; 2] {
+    let trade = &state.tradeoffs;
+    match plot {
+        Plot::Intersection => ["ns a hard ray", trade.miss.name()],
+        _ => ["seconds of the build", trade.goodness.name()],
+    }
 }
 
 /// The family's mark, as near as plots have it.
@@ -112,7 +127,7 @@ const fn marker_of(family: Family) -> MarkerShape {
 /// Draws the plot.
 pub fn show(ui: &mut Ui, state: &State) {
     let trade = &state.tradeoffs;
-    let spots = spots(state);
+    let spots = spots(state, trade.plot);
     if spots.is_empty() {
         empty(
             ui,
@@ -121,10 +136,6 @@ pub fn show(ui: &mut Ui, state: &State) {
         return;
     }
     let palette = Palette::in_ui(ui);
-    let axes = match trade.plot {
-        Plot::Intersection => ["ns a hard ray", trade.miss.name()],
-        _ => ["seconds of the build", trade.goodness.name()],
-    };
     let colors: Vec<Color32> = spots.iter().map(|spot| marks::color(ui, spot.family)).collect();
     let logs = |spot: &Spot| [spot.at.0.log10(), spot.at.1.log10()];
     let best = front(&spots.iter().map(|spot| spot.at).collect::<Vec<_>>());
@@ -143,7 +154,7 @@ pub fn show(ui: &mut Ui, state: &State) {
     }
     let id = if trade.plot == Plot::Intersection { "intersection" } else { "model" };
     let height = ui.available_height() - theme::GRID;
-    log_log(id, axes).height(height).show(ui, |plot| {
+    log_log(id, axes(state, trade.plot)).height(height).show(ui, |plot| {
         let mut joined: Vec<[f64; 2]> = spots.iter().zip(&best).filter(|(_, best)| **best).map(|(spot, _)| logs(spot)).collect();
         joined.sort_by(|a, b| a[0].total_cmp(&b[0]));
         plot.line(Line::new("nobody is better at both", PlotPoints::from(joined)).color(palette.dim).width(1.0));

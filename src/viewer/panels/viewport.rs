@@ -1,6 +1,5 @@
 //! The 3D view: the picture with boxes over it, and the hands.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
@@ -8,12 +7,11 @@ use glam::Vec2;
 
 use super::{Commands, captions, marking, split};
 use crate::scene::Camera;
-use crate::viewer::checks::Mark;
 use crate::viewer::command::Command;
 use crate::viewer::gpu::{self, Base, DrawList, Raster, View};
 use crate::viewer::navigation;
 use crate::viewer::rays_over;
-use crate::viewer::settings::{Navigation, Workspace};
+use crate::viewer::settings::Navigation;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -102,11 +100,7 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
         }
         None => gpu::paint(ui.painter(), rect, PANES[0], list),
     }
-    let marks: Cow<'_, [Mark]> = match state.settings.workspace {
-        Workspace::Check => Cow::Borrowed(&state.checks.marks),
-        Workspace::Ray => Cow::Owned(state.rays.marks()),
-        Workspace::View | Workspace::Structure | Workspace::Compare => Cow::Borrowed(&[]),
-    };
+    let marks = rays_over::marks(state);
     rays_over::paint(&ui.painter_at(rect), rect, &marks, &view, model.geometry.space(), palette);
     let (there, all) = model.raster.progress();
     if state.picture.is_none() && there < all {

@@ -61,11 +61,13 @@ impl State {
         (self.seen, self.counted) = (None, None);
         (self.cameras, self.choices) = (History::default(), History::default());
         (self.needs, self.needing) = (None, None);
+        self.exports.opened();
         self.timings = Timings::default();
         (self.tradeoffs.running, self.tradeoffs.rows) = (None, Vec::new());
         self.tiles.clear();
         self.clicked = None;
         self.shared.give_back(std::mem::take(&mut self.visiting));
+        (self.tradeoffs.growing, self.tradeoffs.scaling) = (None, Vec::new());
         self.checks.opened();
         let ray = self.rays.asked.filter(|_| reopened.is_some());
         let section = self.first_section.take();

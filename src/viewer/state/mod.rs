@@ -10,9 +10,11 @@ mod dialog;
 mod erring;
 mod exploring;
 mod filming;
+mod exporting;
 mod finished;
 mod following;
 mod heating;
+mod growing;
 mod keeping;
 mod refresh;
 mod saving;
@@ -38,6 +40,7 @@ use super::checks::Checks;
 use super::command::Command;
 use super::dialogs::FileDialog;
 use super::errors::Errors;
+use super::exports::Exports;
 use super::filming::Filming;
 use super::gpu::Overlay;
 use super::graphics::Graphics;
@@ -50,7 +53,7 @@ use super::pick::Picked;
 use super::rays::Rays;
 use super::settings::{Settings, Workspace};
 use super::tiles::Tiles;
-use super::timings::Timings;
+use super::timings::{Terms, Timings};
 use super::tradeoffs::Tradeoffs;
 use super::tree::Tree;
 use super::workers::{
@@ -59,7 +62,6 @@ use super::workers::{
 use super::workspace_file::WorkspaceFile;
 use crate::accel::{CellId, cell};
 use crate::geometry::HalfSpace;
-use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
 use crate::render::sampler::SamplerKind;
@@ -103,6 +105,10 @@ pub struct State {
     pub collected: Collected,
     /// The table of timings.
     pub timings: Timings,
+    /// How that is measured and sorted.
+    pub terms_of_timings: Terms,
+    /// What is taken away from the window.
+    pub exports: Exports,
     /// The Check workspace.
     pub checks: Checks,
     /// The picture's error, in the Compare workspace.
@@ -274,6 +280,8 @@ impl State {
             overlay: None,
             collected: Collected::default(),
             timings: Timings::default(),
+            terms_of_timings: Terms::default(),
+            exports: Exports::default(),
             checks: Checks::default(),
             errors: Errors::default(),
             tradeoffs: Tradeoffs::default(),
@@ -346,11 +354,13 @@ impl State {
     /// Whether work that must not be disturbed runs.
     pub fn is_measuring(&self) -> bool {
         self.measuring.is_some()
+            || self.exports.report.is_some()
             || self.needing.is_some()
             || self.causes.running.is_some()
             || self.errors.making.is_some()
             || self.tradeoffs.running.is_some()
             || self.tiles.running.is_some()
+            || self.tradeoffs.growing.is_some()
     }
 
     /// Whether the lab runs or the model is checked, which would disturb a measurement.
@@ -385,6 +395,7 @@ impl State {
             || self.is_tiling()
             || self.awaits_visits()
             || self.saving.is_busy()
+            || self.exports.is_writing()
             || self.awaited.is_some()
             || drawing
     }
@@ -401,6 +412,8 @@ impl State {
             Command::CancelLoad => self.stay(),
             Command::CancelBuild => self.cancel_build(),
             Command::CancelMeasure => self.measuring = None,
+            Command::Fairness(fairness) => self.terms_of_timings.fairness = fairness,
+            Command::SortTimings(column) => self.terms_of_timings.sort_by(column),
             Command::Structure(id) => {
                 self.settings.structure = id.to_owned();
                 self.choose();
@@ -509,6 +522,8 @@ impl State {
             Command::Goodness(goodness) => self.tradeoffs.goodness = goodness,
             Command::MeasureTradeoffs => self.measure_tradeoffs(),
             Command::CancelTradeoffs => self.tradeoffs.running = None,
+            Command::MeasureScaling => self.measure_scaling(),
+            Command::CancelScaling => self.tradeoffs.growing = None,
             Command::Dismiss => self.error = None,
             Command::Memory(mib) => self.set_memory(mib),
             Command::Theme(theme) => self.settings.theme = theme,
@@ -521,6 +536,8 @@ impl State {
             Command::PutBeside(id) => self.put_beside(id),
             Command::Divider(at) => self.beside.divider = at.clamp(0.0, 1.0),
             Command::SaveWorkspace => self.ask_where_to_save(),
+            Command::Export(export) => self.ask_where_to_export(export),
+            Command::CancelReport => self.exports.report = None,
             Command::AddBookmark => self.add_bookmark(),
             Command::Bookmark(at) => self.go_to_bookmark(at),
             Command::DropBookmark(at) => {
@@ -676,8 +693,7 @@ impl State {
     /// Every structure over the open model, those that are kept and those to be built, and the present view.
     fn plan(&mut self) -> Option<Plan> {
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return None };
-        // All have the same test: not one that stands in brute force alone.
-        let test = TestKind::ALL.into_iter().find(|test| *test == self.settings.test).unwrap_or_default();
+        let test = self.settings.common_test();
         let wanted = crate::accel::registry::ALL.iter().map(|entry| Key { entry, params: self.settings.params_of(entry), test });
         let (mut kept, mut missing) = (Vec::new(), Vec::new());
         for key in wanted {
@@ -698,7 +714,7 @@ impl State {
         }
         let Some(plan) = self.plan() else { return };
         let pause = self.begin_measuring();
-        match workers::measure_all(&self.shared, plan, pause) {
+        match workers::measure_all(&self.shared, plan, self.terms_of_timings.fairness, pause) {
             Ok(job) => self.measuring = Some(job),
             Err(e) => self.fail(format!("Can't measure: {e}.")),
         }
@@ -708,6 +724,7 @@ impl State {
     pub fn advance(&mut self) {
         self.advance_dialog();
         self.advance_saving();
+        self.advance_exports();
         self.advance_load();
         self.advance_build();
         self.advance_causes();
@@ -727,6 +744,7 @@ impl State {
         self.advance_errors();
         self.advance_tradeoffs();
         self.advance_tiles();
+        self.advance_scaling();
         self.advance_statistics();
         self.advance_prediction();
         self.advance_textures();

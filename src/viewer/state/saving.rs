@@ -8,6 +8,7 @@ use super::State;
 use crate::accel::{CellId, registry};
 use crate::job::{Job, Outcome};
 use crate::lab::follow::{from_text, to_text};
+use crate::viewer::files;
 use crate::viewer::model::Instances;
 use crate::viewer::pick::Picked;
 use crate::viewer::rays::MOST;
@@ -109,16 +110,7 @@ impl State {
 
     fn write(&mut self, path: Option<PathBuf>) {
         let (Some(path), Some(file)) = (path, self.to_file()) else { return };
-        let mut whole = path.clone();
-        if !WorkspaceFile::is_one(&path.to_string_lossy()) {
-            whole.as_mut_os_string().push(format!(".{ENDING}"));
-        }
-        // The dialog has asked about the name that it gave alone.
-        let overwrites = whole != path;
-        let write = move || match overwrites && whole.exists() {
-            true => Err(format!("Can't save {}: it is there already. Choose it by its whole name.", whole.display())),
-            false => file.write(&whole),
-        };
+        let write = move || file.write(&files::with_ending(path, ENDING)?);
         match Job::spawn("save", self.shared.waker(), move |_, _| write()) {
             Ok(job) => self.saving.writing = Some(job),
             Err(e) => self.fail(format!("Can't save: {e}.")),

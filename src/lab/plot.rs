@@ -1,6 +1,9 @@
-//! Plots as SVG and PNG: several curves over logarithmic axes, one panel beside the other.
+//! Plots as SVG and PNG: several curves over logarithmic or even axes, one panel beside the other.
+
+use std::ops::Range;
 
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::prelude::*;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg;
@@ -20,6 +23,18 @@ pub struct Panel {
     pub guide: Option<Guide>,
     /// Whether curves are named at their first point, instead of in a list.
     pub labelled: bool,
+    /// How axes are divided.
+    pub scale: Scale,
+}
+
+/// How axes are divided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scale {
+    /// By powers of ten; what is not positive has no place.
+    #[default]
+    Log,
+    /// Evenly.
+    Even,
 }
 
 /// Its name, and a function.
@@ -38,7 +53,7 @@ pub struct Curve {
     pub points: Vec<Dot>,
 }
 
-/// A point of a curve. One that has a coordinate that is not positive is left out.
+/// A point of a curve. One that has no place on the axes is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dot {
     /// Where it is.
@@ -67,7 +82,7 @@ type Failed = DrawingAreaErrorKind<std::io::Error>;
 ///
 /// # Errors
 /// What the drawing says; there is none that an ordinary plot gives.
-pub fn log_log(panels: &[Panel]) -> Result<String, Failed> {
+pub fn svg_of(panels: &[Panel]) -> Result<String, Failed> {
     let mut svg = String::new();
     {
         let columns = panels.len().max(1);
@@ -100,18 +115,52 @@ pub fn png_of(svg: &str) -> Result<Vec<u8>, String> {
 }
 
 fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), Failed> {
-    let all: Vec<(f64, f64)> = panel.curves.iter().flat_map(|c| &c.points).filter(|dot| is_drawable(dot)).map(|d| d.at).collect();
-    let span = |of: fn(&(f64, f64)) -> f64| {
-        let (low, high) = all.iter().map(of).fold((f64::INFINITY, 0.0f64), |(l, h), x| (l.min(x), h.max(x)));
-        if low <= high { low * 0.7..high * 1.4 } else { 0.1..10.0 }
-    };
-    let (xs, ys) = (span(|p| p.0), span(|p| p.1));
-    let mut chart = ChartBuilder::on(area)
-        .caption(&panel.title, ("sans-serif", TEXT + 3))
-        .margin(12)
-        .x_label_area_size(44)
-        .y_label_area_size(72)
-        .build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale())?;
+    let curves = panel.curves.iter().flat_map(|c| &c.points);
+    let all: Vec<(f64, f64)> = curves.filter(|dot| panel.scale.has(dot)).map(|d| d.at).collect();
+    let (xs, ys) = (panel.scale.around(all.iter().map(|p| p.0)), panel.scale.around(all.iter().map(|p| p.1)));
+    let mut builder = ChartBuilder::on(area);
+    builder.caption(&panel.title, ("sans-serif", TEXT + 3)).margin(12).x_label_area_size(44).y_label_area_size(72);
+    let spans = (xs.clone(), ys.clone());
+    match panel.scale {
+        Scale::Log => fill(builder.build_cartesian_2d(xs.log_scale(), ys.log_scale())?, panel, &all, spans),
+        Scale::Even => fill(builder.build_cartesian_2d(xs, ys)?, panel, &all, spans),
+    }
+}
+
+impl Scale {
+    /// Whether a point has a place.
+    fn has(self, dot: &Dot) -> bool {
+        let (x, y) = dot.at;
+        let fits = |v: f64| v.is_finite() && (self == Self::Even || v > 0.0);
+        fits(x) && fits(y)
+    }
+
+    /// An axis that holds all of these, with some room.
+    fn around(self, values: impl Iterator<Item = f64>) -> Range<f64> {
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        match self {
+            Self::Log if low <= high => low * 0.7..high * 1.4,
+            Self::Log => 0.1..10.0,
+            Self::Even if low <= high => {
+                let room = if high > low { (high - low) * 0.05 } else { low.abs().max(1.0) * 0.5 };
+                low - room..high + room
+            }
+            Self::Even => 0.0..1.0,
+        }
+    }
+}
+
+/// Draws what is over the axes.
+fn fill<'a, 'b: 'a, X, Y>(
+    mut chart: ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>,
+    panel: &Panel,
+    all: &[(f64, f64)],
+    (xs, ys): (Range<f64>, Range<f64>),
+) -> Result<(), Failed>
+where
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
     let [x, y] = panel.axes;
     let text = ("sans-serif", TEXT);
     let mesh = &mut chart.configure_mesh();
@@ -133,7 +182,7 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
             }
         }
         let color = shaded(color_of(&curve.id), family.iter().position(|id| *id == curve.id).unwrap_or(0));
-        let dots: Vec<Dot> = curve.points.iter().copied().filter(is_drawable).collect();
+        let dots: Vec<Dot> = curve.points.iter().copied().filter(|dot| panel.scale.has(dot)).collect();
         let ends = |end: fn((f64, f64)) -> f64| {
             dots.iter().filter_map(move |dot| Some((dot.span.map(end).filter(|x| *x > 0.0)?.clamp(xs.start, xs.end), dot.at.1)))
         };
@@ -178,12 +227,6 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
     legend.label_font(text).legend_area_size(44).draw()
 }
 
-/// Whether it has a place on logarithmic axes.
-fn is_drawable(dot: &Dot) -> bool {
-    let (x, y) = dot.at;
-    x > 0.0 && y > 0.0 && x.is_finite() && y.is_finite()
-}
-
 fn family_of(id: &str) -> Option<Family> {
     registry::find(id).map(|entry| entry.family)
 }
@@ -219,6 +262,8 @@ fn short(x: &f64) -> String {
         x if x >= 1e3 => format!("{} k", x / 1e3),
         // Not to the last bit: 0.4, not 0.4000000000000001.
         x if x >= 1e-3 => format!("{}", (x * 1e6).round() / 1e6),
+        0.0 => "0".to_owned(),
+        x if x < 0.0 => format!("-{}", short(&-x)),
         x => format!("{x:.0e}"),
     }
 }
@@ -231,14 +276,20 @@ mod tests {
     fn every_curve_is_drawn_and_named() {
         let curve = |id: &str, power: f64| Curve::of(id, [1e3, 1e4, 1e5].map(|n: f64| (n, 1e-6 * n.powf(power))));
         let guide: (_, fn(f64) -> f64) = ("N log N", |n| n * n.ln());
-        let mut panel =
-            Panel { title: "Builds".to_owned(), axes: ["triangles", "s"], curves: vec![], guide: Some(guide), labelled: false };
-        let empty = log_log(&[panel.clone()]).expect("drawn");
+        let mut panel = Panel {
+            title: "Builds".to_owned(),
+            axes: ["triangles", "s"],
+            curves: vec![],
+            guide: Some(guide),
+            labelled: false,
+            scale: Scale::Log,
+        };
+        let empty = svg_of(&[panel.clone()]).expect("drawn");
         panel.curves = vec![curve("bvh", 1.1), curve("kdtree", 1.2)];
         panel.curves[1].points.push(Dot { at: (1e6, f64::NAN), span: None, hollow: false });
         panel.curves[0].points[1].span = Some((9e3, 2e4));
         panel.curves[0].points[2].span = Some((9e4, 2e5));
-        let svg = log_log(&[panel.clone(), panel]).expect("drawn");
+        let svg = svg_of(&[panel.clone(), panel]).expect("drawn");
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && !svg.contains("NaN"));
         for said in ["bvh", "kdtree", "N log N", "triangles"] {
             assert_eq!(svg.matches(&format!("\n{said}\n")).count(), 2, "{said}");
@@ -250,5 +301,16 @@ mod tests {
         assert_eq!(picture.dimensions(), (4 * SIZE.0, 2 * SIZE.1));
         let dark = |y: u32| (0..picture.width()).filter(|x| picture.get_pixel(*x, y).0.iter().all(|c| *c < 96)).count();
         assert!((0..80).any(|y| dark(y) > 20), "the title is written");
+    }
+
+    #[test]
+    fn even_axes_have_a_place_for_zero_and_text_stays_text() {
+        let curve = Curve { name: "a < b & \"c\"".to_owned(), ..Curve::of("x", [(0.0, 0.0), (0.5, -2.0), (1.0, 3.0)]) };
+        let axes = ["place", "SAH cost"];
+        let panel =
+            Panel { title: "<node>".to_owned(), axes, curves: vec![curve], guide: None, labelled: false, scale: Scale::Even };
+        let svg = svg_of(&[panel]).expect("drawn");
+        assert!(usvg::Tree::from_str(&svg, &usvg::Options::default()).is_ok(), "well formed");
+        assert!(!svg.contains("<node>") && svg.matches("<circle").count() >= 3);
     }
 }

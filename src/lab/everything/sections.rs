@@ -2,9 +2,9 @@
 
 use super::html::Page;
 use super::{Everything, Shown, said_of};
-use crate::cli::converge;
-use crate::cli::plot::{Curve, Panel, log_log};
+use crate::lab::converge;
 use crate::lab::format::{bytes, count, duration, number, or_missing, percent, rate, spread};
+use crate::lab::plot::{Curve, Panel, Scale, svg_of};
 use crate::lab::tradeoffs::{Erring, front};
 use crate::lab::{Metric, RayKind, StructureRow};
 
@@ -132,7 +132,7 @@ fn image_error(page: &mut Page, all: &Everything) -> Result<(), String> {
     ));
     for (_, panel) in converge::panels(&all.convergence) {
         let caption = format!("RMSE against {}.", panel.axes[0]);
-        page.plot(&log_log(&[panel]).map_err(|error| error.to_string())?, &caption);
+        page.plot(&svg_of(&[panel]).map_err(|error| error.to_string())?, &caption);
     }
     if measured.coincide {
         page.text("Against samples all curves coincide: to the bit, or but for counted near ties.");
@@ -197,7 +197,7 @@ fn pareto(title: &str, axes: [&'static str; 2], points: Vec<(String, String, (f6
     let front = Curve { name: String::new(), dash: 1, ..Curve::of("", best) };
     let point = |(id, name, at): (String, String, (f64, f64))| Curve { name, ..Curve::of(&id, [at]) };
     let curves = std::iter::once(front).chain(points.into_iter().map(point)).collect();
-    Panel { title: title.to_owned(), axes, curves, guide: None, labelled: true }
+    Panel { title: title.to_owned(), axes, curves, guide: None, labelled: true, scale: Scale::Log }
 }
 
 fn intersection_error(page: &mut Page, all: &Everything) -> Result<(), String> {
@@ -227,7 +227,7 @@ fn intersection_error(page: &mut Page, all: &Everything) -> Result<(), String> {
         pareto("Error of t", ["ns a hard ray", "ulps, one hit in a thousand (0 is drawn at 0.1)"], points(|t| t.p999_ulps));
     for panel in [wrong, rounded, ulps] {
         let caption = format!("{}: those joined are beaten by nobody at both.", panel.title);
-        page.plot(&log_log(&[panel]).map_err(|error| error.to_string())?, &caption);
+        page.plot(&svg_of(&[panel]).map_err(|error| error.to_string())?, &caption);
     }
     let cells = |(_, name, test, erring): &(&str, String, &str, &Erring)| {
         let numbers = [erring.ns, erring.wrong_per_million, erring.rounded_per_million, erring.p999_ulps].map(number);
@@ -250,7 +250,7 @@ fn model_error(page: &mut Page, all: &Everything) -> Result<(), String> {
     let sah = pareto("Predicted", ["seconds of the build", "ns a random line"], points(&|row| row.predicted_ns));
     for panel in [measured, sah] {
         let caption = format!("{} cost against the time of the build: those joined are beaten by nobody at both.", panel.title);
-        page.plot(&log_log(&[panel]).map_err(|error| error.to_string())?, &caption);
+        page.plot(&svg_of(&[panel]).map_err(|error| error.to_string())?, &caption);
     }
     let headers = [
         "structure",

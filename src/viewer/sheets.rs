@@ -1,0 +1,445 @@
+//! The tables of the window as they are saved: every figure as exactly as it is known, with its unit over the column.
+
+use super::rays::Column;
+use super::state::State;
+use super::timings::secs_of_sample;
+use super::tradeoffs::Plot;
+use crate::accel::{Prune, Step};
+use crate::geometry::Axis;
+use crate::lab::converge::Reference;
+use crate::lab::{Fairness, Field, RayKind, SahCurves, Sheet, Timing};
+
+/// A table or plot of the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum What {
+    /// The timings.
+    Timings,
+    /// Figures of the shown structure, and what is predicted of rays in it.
+    Statistics,
+    /// What the model uses and what is left out.
+    Needs,
+    /// The cost of every division of the selected node.
+    Division,
+    /// The steps of a ray.
+    Steps,
+    /// The picture's error.
+    Errors,
+    /// Errors of tests of triangles and boxes.
+    Tests,
+    /// Quality against its cost, and predicted against measured.
+    Quality,
+    /// Time against triangle count.
+    Scaling,
+    /// The matrix of the stability lab.
+    Stability,
+}
+
+impl What {
+    /// All, in the order of workspaces.
+    pub const ALL: [Self; 10] = [
+        Self::Timings,
+        Self::Statistics,
+        Self::Needs,
+        Self::Division,
+        Self::Steps,
+        Self::Errors,
+        Self::Tests,
+        Self::Quality,
+        Self::Scaling,
+        Self::Stability,
+    ];
+
+    /// What it is called in menus and names of files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Timings => "timings",
+            Self::Statistics => "statistics",
+            Self::Needs => "needs",
+            Self::Division => "division",
+            Self::Steps => "steps",
+            Self::Errors => "errors",
+            Self::Tests => "tests",
+            Self::Quality => "quality",
+            Self::Scaling => "scaling",
+            Self::Stability => "stability",
+        }
+    }
+
+    /// Whether it is a plot as well as a table.
+    pub const fn has_plot(self) -> bool {
+        matches!(self, Self::Statistics | Self::Division | Self::Errors | Self::Tests | Self::Quality | Self::Scaling)
+    }
+
+    /// Whether there is anything of it.
+    pub fn is_there(self, state: &State) -> bool {
+        match self {
+            Self::Timings => state.model.is_some(),
+            Self::Statistics => state.shown.as_ref().is_some_and(|shown| shown.stats.is_some()),
+            Self::Needs => state.model.as_ref().is_some_and(|model| !model.needs.is_empty()),
+            Self::Division => curves(state).is_some(),
+            Self::Steps => !state.rays.columns.is_empty(),
+            Self::Errors => !state.errors.curves.is_empty(),
+            Self::Tests | Self::Quality => !state.tradeoffs.rows.is_empty(),
+            Self::Scaling => !state.tradeoffs.scaling.is_empty(),
+            Self::Stability => !state.checks.cases.is_empty(),
+        }
+    }
+
+    /// What the plots of the Compare workspace are saved as.
+    pub const fn of_plot(plot: Plot) -> Self {
+        match plot {
+            Plot::Image => Self::Errors,
+            Plot::Intersection => Self::Tests,
+            Plot::Model => Self::Quality,
+            Plot::Scaling => Self::Scaling,
+        }
+    }
+}
+
+/// The curves of the selected node, where their outcome is not hidden.
+pub(super) fn curves(state: &State) -> Option<&SahCurves> {
+    let hidden = state.settings.hide_outcome && !state.tree.revealed;
+    state.curves.as_ref().and_then(|curves| curves.1.as_ref()).filter(|_| !hidden)
+}
+
+/// A table as it is saved; `None` where there is nothing of it.
+pub fn sheet(state: &State, what: What) -> Option<Sheet> {
+    if !what.is_there(state) {
+        return None;
+    }
+    Some(match what {
+        What::Timings => timings(state),
+        What::Statistics => statistics(state),
+        What::Needs => needs(state),
+        What::Division => division(curves(state)?),
+        What::Steps => steps(&state.rays.columns),
+        What::Errors => errors(state),
+        What::Tests => tests(state),
+        What::Quality => quality(state),
+        What::Scaling => scaling(state),
+        What::Stability => stability(state),
+    })
+}
+
+fn timings(state: &State) -> Sheet {
+    let mut sheet = Sheet::new(&[
+        "structure",
+        "terms",
+        "build (s)",
+        "bytes",
+        "1 spp (s)",
+        "rays (1e6/s)",
+        "spread (1e6/s)",
+        "nodes/ray",
+        "tests/ray",
+        "rounds",
+        "rays",
+        "note",
+    ]);
+    let terms = |t: Option<&Timing>| t.map(|_| state.timings.fairness.name());
+    let mut row =
+        |name: &str, terms: Option<&'static str>, [build, bytes]: [Field; 2], t: Option<&Timing>, note: Option<String>| {
+            sheet.row([
+                name.into(),
+                terms.into(),
+                build,
+                bytes,
+                t.map(secs_of_sample).into(),
+                t.map(|t| t.mrays_per_sec).into(),
+                t.map(|t| t.mrays_per_sec * t.secs_half_iqr / t.secs_median.max(f64::MIN_POSITIVE)).into(),
+                t.map(|t| t.nodes_per_ray).into(),
+                t.map(|t| t.prims_per_ray).into(),
+                t.map(|t| t.rounds as u64).into(),
+                t.map(|t| t.rays as u64).into(),
+                note.into(),
+            ]);
+        };
+    for (entry, known) in state.timings.sorted(&state.terms_of_timings) {
+        let timing = known.timing.as_ref();
+        let note = known.failed.clone().or_else(|| timing.and_then(|t| t.capped.clone()));
+        row(entry.id, terms(timing), [known.build_secs.into(), known.bytes.into()], timing, note);
+    }
+    if let Some(raster) = &state.timings.raster {
+        let timing = raster.timing();
+        row("raster", terms(Some(&timing)), [Field::Missing, Field::Missing], Some(&timing), None);
+    }
+    sheet
+}
+
+fn statistics(state: &State) -> Sheet {
+    let mut sheet = Sheet::new(&["structure", "figure", "value", "unit"]);
+    let Some(shown) = &state.shown else { return sheet };
+    let id = shown.key.entry.id;
+    let mut fact = |name: String, value: Field, unit: &str| sheet.row([id.into(), name.into(), value, unit.into()]);
+    fact("build".into(), shown.build_secs.into(), "s");
+    shown.phases.iter().for_each(|phase| fact(format!("build: {}", phase.name), phase.secs.into(), "s"));
+    for (param, value) in shown.key.params.iter() {
+        fact(format!("parameter {}", param.id), value.to_string().into(), "");
+    }
+    if let Some(stats) = &shown.stats {
+        fact("SAH cost".into(), stats.sah.into(), "");
+        let counts = [("nodes", stats.nodes), ("leaves", stats.leaves), ("empty leaves", stats.empty_leaves)];
+        counts.into_iter().for_each(|(name, n)| fact(name.into(), n.into(), ""));
+        fact("depth".into(), u64::from(stats.max_depth).into(), "");
+        fact("references".into(), stats.references.into(), "");
+        stats.memory.iter().for_each(|part| fact(format!("memory: {}", part.name), part.bytes.into(), "B"));
+        let sizes = stats.leaf_sizes.iter().enumerate();
+        sizes.for_each(|(i, n)| fact(format!("leaves with {i} triangles"), (*n).into(), ""));
+        let depths = stats.leaf_depths.iter().enumerate();
+        depths.for_each(|(i, n)| fact(format!("leaves at depth {i}"), (*n).into(), ""));
+    }
+    if let Some(quality) = &shown.quality {
+        fact("nodes/line, predicted".into(), quality.expected_nodes.into(), "");
+        fact("tests/line, predicted".into(), quality.expected_tests.into(), "");
+        if let Some(lines) = quality.lines {
+            fact("nodes/line, counted".into(), lines.nodes.into(), "");
+            fact("tests/line, counted".into(), lines.tests.into(), "");
+        }
+        fact("sibling overlap".into(), quality.overlap.into(), "");
+        fact("empty space".into(), quality.empty_volume.into(), "share");
+        fact("EPO".into(), quality.epo.map(|epo| epo.value).into(), "");
+        fact("SAH and EPO".into(), quality.blend.into(), "");
+    }
+    if let Some(costs) = state.timings.costs(&shown.key) {
+        fact("C_trav, measured".into(), costs.c_trav_ns.into(), "ns");
+        fact("C_isect, measured".into(), costs.c_isect_ns.into(), "ns");
+        fact("C_0, measured".into(), costs.c0_ns.into(), "ns");
+    }
+    sheet
+}
+
+fn needs(state: &State) -> Sheet {
+    let mut sheet = Sheet::new(&["feature", "used", "saved (B)", "saved (ns/ray)", "spread (ns/ray)", "why"]);
+    for finding in state.model.iter().flat_map(|model| model.needs.iter()) {
+        let id = finding.feature.id();
+        let measured = state.needs.as_ref().and_then(|report| report.features.iter().find(|row| row.id == id));
+        sheet.row([
+            id.into(),
+            if finding.used { "used" } else { "left out" }.into(),
+            measured.map(|row| row.bytes_saved as f64).into(),
+            measured.map(|row| row.ns_per_ray_saved).into(),
+            measured.map(|row| row.ns_spread).into(),
+            finding.why.clone().into(),
+        ]);
+    }
+    sheet
+}
+
+fn division(curves: &SahCurves) -> Sheet {
+    let mut sheet = Sheet::new(&["kind", "axis", "place (0 to 1)", "SAH cost"]);
+    let mut row = |kind: &str, axis: Option<Axis>, place: Option<f64>, cost: f64| {
+        sheet.row([kind.into(), axis.map(Axis::name).into(), place.into(), cost.into()]);
+    };
+    row("leaf", None, None, curves.leaf);
+    if let Some(chosen) = &curves.chosen {
+        row("chosen", chosen.plane.map(|plane| plane.0), chosen.plane.map(|plane| plane.1), chosen.cost);
+    }
+    for other in &curves.others {
+        if let Some(division) = &other.division {
+            row(other.name, Some(division.plane.0), Some(division.plane.1), division.cost);
+        }
+    }
+    for (kind, all) in [("candidate", &curves.axes), ("bucket", &curves.buckets)] {
+        for (axis, candidates) in Axis::ALL.into_iter().zip(all) {
+            candidates.iter().for_each(|(place, cost)| row(kind, Some(axis), Some(*place), *cost));
+        }
+    }
+    sheet
+}
+
+fn steps(columns: &[Column]) -> Sheet {
+    let mut sheet =
+        Sheet::new(&["structure", "step", "what", "node or triangle", "entry t", "exit t", "hit t", "best t", "waiting"]);
+    for column in columns {
+        for (i, step) in column.followed.steps.iter().enumerate() {
+            let (what, number, hit) = match step.step {
+                Step::Level(level) => ("level", Some(u64::from(level)), None),
+                Step::Entered(node) => ("enters", Some(u64::from(node)), None),
+                Step::Pruned(node, Prune::Missed) => ("left out: missed", Some(u64::from(node)), None),
+                Step::Pruned(node, Prune::Outside) => ("left out: beyond", Some(u64::from(node)), None),
+                Step::Pruned(node, Prune::BehindHit) => ("left out: behind the best hit", Some(u64::from(node)), None),
+                Step::Tested(prim, hit) => ("tests", Some(u64::from(prim)), hit),
+                Step::OutsideCell => ("hit outside the cell", None, None),
+            };
+            sheet.row([
+                column.built.key.entry.id.into(),
+                (i as u64 + 1).into(),
+                what.into(),
+                number.into(),
+                step.interval.map(|[a, _]| f64::from(a)).into(),
+                step.interval.map(|[_, b]| f64::from(b)).into(),
+                hit.map(f64::from).into(),
+                f64::from(step.best).into(),
+                u64::from(step.waiting).into(),
+            ]);
+        }
+    }
+    sheet
+}
+
+fn errors(state: &State) -> Sheet {
+    let mut sheet =
+        Sheet::new(&["structure", "build (s)", "spp", "seconds", "estimated noise", "RMSE", "relMSE", "MAE", "SMAPE", "hollow"]);
+    let hollow = |reference: &Reference, rmse| if reference.is_hollow(rmse) { "yes" } else { "no" };
+    for live in &state.errors.curves {
+        for (i, shot) in live.shots.iter().enumerate() {
+            let known = live.errors.get(i).copied().flatten();
+            sheet.row([
+                live.key.entry.id.into(),
+                live.build_secs.into(),
+                u64::from(shot.samples).into(),
+                shot.secs.into(),
+                shot.noise.into(),
+                known.map(|e| e.rmse).into(),
+                known.map(|e| e.relmse).into(),
+                known.map(|e| e.mae).into(),
+                known.map(|e| e.smape).into(),
+                state.errors.reference.as_deref().zip(known).map(|(reference, e)| hollow(reference, e.rmse)).into(),
+            ]);
+        }
+    }
+    sheet
+}
+
+fn tests(state: &State) -> Sheet {
+    let mut sheet = Sheet::new(&[
+        "structure",
+        "test of",
+        "test",
+        "rays",
+        "ns/ray",
+        "wrong (1e-6)",
+        "rounded (1e-6)",
+        "t, one in a thousand (ulps)",
+    ]);
+    for row in &state.tradeoffs.rows {
+        let triangles = row.tests.iter().map(|test| ("triangles", test.test.id(), &test.erring));
+        let boxes = row.boxes.iter().map(|test| ("boxes", test.test.id(), &test.erring));
+        for (of, test, erring) in triangles.chain(boxes) {
+            sheet.row([
+                row.name.clone().into(),
+                of.into(),
+                test.into(),
+                (erring.rays as u64).into(),
+                erring.ns.into(),
+                erring.wrong_per_million.into(),
+                erring.rounded_per_million.into(),
+                erring.p999_ulps.into(),
+            ]);
+        }
+    }
+    sheet
+}
+
+/// The kinds of rays that quality is measured on.
+const KINDS: [RayKind; 4] = [RayKind::Lines, RayKind::Primary, RayKind::Shadow, RayKind::Diffuse];
+
+fn quality(state: &State) -> Sheet {
+    let mut sheet = Sheet::new(&[
+        "structure",
+        "build (s)",
+        "SAH cost",
+        "EPO",
+        "predicted (ns/line)",
+        "lines (ns)",
+        "lines off (share)",
+        "primary (ns)",
+        "primary off (share)",
+        "shadow (ns)",
+        "shadow off (share)",
+        "diffuse (ns)",
+        "diffuse off (share)",
+        "note",
+    ]);
+    for row in &state.tradeoffs.rows {
+        let mut fields: Vec<Field> =
+            vec![row.name.clone().into(), row.build_secs.into(), row.sah.into(), row.epo.into(), row.predicted_ns.into()];
+        for kind in KINDS {
+            fields.push(row.ns.get(&kind).copied().into());
+            fields.push(row.prediction_error(kind).into());
+        }
+        fields.push(row.error.clone().into());
+        sheet.rows.push(fields);
+    }
+    sheet
+}
+
+fn scaling(state: &State) -> Sheet {
+    let mut sheet = Sheet::new(&[
+        "structure",
+        "triangles",
+        "build (s)",
+        "spread (s)",
+        "builds",
+        "ns/ray",
+        "spread (ns/ray)",
+        "rounds",
+        "terms",
+    ]);
+    for structure in &state.tradeoffs.scaling {
+        for p in &structure.points {
+            sheet.row([
+                structure.id.clone().into(),
+                p.triangles.into(),
+                p.build_secs.into(),
+                p.build_spread.into(),
+                (p.builds as u64).into(),
+                (p.ray_secs * 1e9).into(),
+                (p.ray_spread * 1e9).into(),
+                (p.rounds as u64).into(),
+                Fairness::LikeForLike.name().into(),
+            ]);
+        }
+    }
+    sheet
+}
+
+fn stability(state: &State) -> Sheet {
+    let mut sheet = Sheet::new(&[
+        "case",
+        "structure",
+        "test",
+        "verdict",
+        "rays",
+        "near",
+        "wrong where clear",
+        "wrong elsewhere",
+        "slipped through",
+        "t (ulps)",
+        "ns/ray",
+        "note",
+    ]);
+    for case in &state.checks.cases {
+        for row in &case.structures {
+            sheet.row([
+                case.id.into(),
+                row.id.into(),
+                row.test.id().into(),
+                super::panels::stability::verdict(row).into(),
+                (row.rays as u64).into(),
+                (row.near as u64).into(),
+                (row.clear_wrong as u64).into(),
+                (row.boundary_wrong as u64).into(),
+                (row.slipped as u64).into(),
+                row.max_ulps.into(),
+                row.ns_per_ray.into(),
+                row.error.clone().into(),
+            ]);
+        }
+    }
+    sheet
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_make_names_of_files_and_no_two_are_alike() {
+        for (i, what) in What::ALL.iter().enumerate() {
+            assert!(what.name().chars().all(|c| c.is_ascii_lowercase()), "{}", what.name());
+            assert!(What::ALL[..i].iter().all(|other| other.name() != what.name()), "{}", what.name());
+        }
+        assert!(Plot::ALL.into_iter().all(|plot| What::of_plot(plot).has_plot()));
+    }
+}

@@ -1,0 +1,163 @@
+//! What is taken away from the window: tables, plots, the figure, the picture and the report.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use boxwood::lab::Fairness;
+use boxwood::viewer::timings::Column;
+use boxwood::viewer::tradeoffs::Plot;
+use eframe::egui::{Key, Modifiers, Role, vec2};
+use egui_kittest::kittest::Queryable;
+
+use crate::window::{Setup, Window};
+
+/// A window whose dialogs answer with this path.
+fn window(answer: &Path) -> Window {
+    let mut setup = Setup { size: vec2(1400.0, 900.0), answer: Some(answer.to_path_buf()), ..Setup::default() };
+    setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
+    Window::new(setup).settled()
+}
+
+/// Waits until something was written, and where that is.
+#[track_caller]
+fn written(w: &mut Window, name: &str) -> PathBuf {
+    w.until("a file", |s| s.exports.said.is_some());
+    w.settle();
+    assert_eq!(w.state().error, None);
+    let said = w.state().exports.said.clone().expect("just written");
+    let (what, path) = said.split_once(" written to ").expect("a sentence");
+    assert_eq!(what, name);
+    assert!(w.says(&said), "the bar at the bottom tells it");
+    PathBuf::from(path)
+}
+
+#[test]
+fn tables_are_saved_as_csv() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("rows"));
+    w.button("Save timings");
+    w.button("Table as CSV…");
+    let path = written(&mut w, "Timings");
+    assert_eq!(path, folder.path().join("rows.csv"), "with its ending");
+    let text = fs::read_to_string(&path).expect("there");
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[0].starts_with("structure,terms,build (s),bytes,"), "{text}");
+    assert_eq!(lines.len(), 1 + boxwood::accel::registry::ALL.len());
+    assert!(lines.iter().any(|line| line.starts_with("bvh,,") && !line.starts_with("bvh,,,")), "built, not measured: {text}");
+    // The dialog asked about another name: what is there stays.
+    w.button("Save timings");
+    w.button("Table as CSV…");
+    w.until("a refusal", |s| s.error.is_some());
+    assert!(w.state().error.as_ref().is_some_and(|why| why.contains("rows.csv") && why.contains("already")));
+    assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 1, "no temporary file is left");
+}
+
+#[test]
+fn plots_are_saved_as_svg_and_png() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (item, ending, begins) in [("Plot as SVG…", "svg", &b"<svg"[..]), ("Plot as PNG…", "png", &b"\x89PNG"[..])] {
+        let mut w = window(&folder.path().join(format!("leaves.{ending}")));
+        w.button("Save statistics");
+        w.button(item);
+        let path = written(&mut w, "Statistics");
+        assert!(fs::read(path).expect("there").starts_with(begins), "{ending}");
+    }
+}
+
+#[test]
+fn the_figure_has_the_picture_and_its_boxes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("view.svg"));
+    w.button("File");
+    w.button("Save figure…");
+    let svg = fs::read_to_string(written(&mut w, "Figure")).expect("there");
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && !svg.contains("NaN"));
+    assert!(svg.contains("data:image/png;base64,") && svg.contains("<path d=\"M") && svg.contains("stroke-dasharray"));
+    assert!(svg.contains("<title>BVH, boxes at depth ") && svg.contains("SAH cost ") && svg.contains("builtin:teapot"));
+}
+
+#[test]
+fn the_picture_is_as_large_as_the_view() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("view.png"));
+    w.button("File");
+    w.button("Save picture…");
+    let picture = fs::read(written(&mut w, "Picture")).expect("there");
+    assert!(picture.starts_with(b"\x89PNG"));
+    let [width, height] = w.state().size_px.map(u32::to_be_bytes);
+    assert_eq!((&picture[16..20], &picture[20..24]), (&width[..], &height[..]));
+}
+
+#[test]
+fn a_dialog_that_is_closed_saves_nothing() {
+    let mut setup = Setup::default();
+    setup.options.model = Some("builtin:lecture".to_owned());
+    let mut w = Window::new(setup).settled();
+    w.button("File");
+    w.button("Save picture…");
+    w.settle();
+    assert!(w.state().exports.said.is_none() && w.state().error.is_none());
+}
+
+#[test]
+fn a_report_that_is_stopped_leaves_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut setup =
+        Setup { size: vec2(1400.0, 900.0), answer: Some(folder.path().to_path_buf()), alone: true, ..Setup::default() };
+    setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
+    let mut w = Window::new(setup).settled();
+    w.button("File");
+    w.button("Export report…");
+    w.until("its start", |s| s.exports.report.is_some());
+    w.step();
+    assert!(w.state().is_measuring() && w.says("Report"));
+    w.button("Cancel the report");
+    w.settle();
+    assert!(w.state().exports.report.is_none() && w.state().exports.said.is_none() && w.state().error.is_none());
+    assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 0);
+}
+
+#[test]
+fn timings_are_sorted_by_a_click_or_a_key() {
+    let mut setup = Setup { size: vec2(1400.0, 900.0), alone: true, ..Setup::default() };
+    setup.options.model = Some("builtin:lecture".to_owned());
+    let mut w = Window::new(setup).settled();
+    w.choose("Like for like", "Each at its best");
+    w.button("Measure");
+    w.until("timings", |s| s.measuring.is_none() && s.timings.view.is_some());
+    w.settle();
+    assert_eq!(w.state().timings.fairness, Fairness::Best);
+    w.button("Sort by Mrays/s");
+    w.step();
+    assert!(w.has(Role::Button, "Sort by Mrays/s, descending"));
+    let rates = |w: &Window| -> Vec<f64> {
+        let rows = w.state().timings.sorted(&w.state().terms_of_timings);
+        rows.iter().filter_map(|(_, row)| row.timing.as_ref()).map(|t| t.mrays_per_sec).collect()
+    };
+    assert!(rates(&w).is_sorted_by(|a, b| a >= b), "{:?}", rates(&w));
+    w.button("Sort by Mrays/s, descending");
+    assert!(rates(&w).is_sorted_by(|a, b| a <= b), "the other way round: {:?}", rates(&w));
+    w.harness.get_by_role_and_label(Role::Button, "Sort by Build").focus();
+    w.step();
+    w.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(w.state().terms_of_timings.column, Column::Build);
+    // Other terms from now on: the table says of which it is.
+    w.choose("Each at its best", "Like for like");
+    w.step();
+    assert!(w.says("measured: each at its best"));
+}
+
+#[test]
+fn time_against_triangles_is_measured_in_the_background_and_can_be_stopped() {
+    let mut setup = Setup { size: vec2(1400.0, 900.0), alone: true, ..Setup::default() };
+    setup.options.model = Some("builtin:soup?triangles=1000".to_owned());
+    setup.options.errors = Some(Plot::Scaling);
+    let mut w = Window::new(setup).settled();
+    assert!(w.says("Not measured. Press Measure."));
+    w.button("Measure");
+    w.until("its start", |s| s.tradeoffs.growing.is_some());
+    w.step();
+    w.button("Cancel");
+    w.settle();
+    assert!(w.state().tradeoffs.growing.is_none() && w.state().tradeoffs.scaling.is_empty() && w.state().error.is_none());
+}
