@@ -24,6 +24,7 @@ pub mod needs;
 pub mod peers;
 mod quality;
 mod raster;
+pub mod ray_file;
 mod rays;
 mod report;
 mod sah_curve;
