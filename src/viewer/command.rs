@@ -55,6 +55,8 @@ pub enum Command {
     SelectLevel(usize),
     /// Select a cell by its row in the tree.
     SelectRow(u32),
+    /// The same by an arrow key: rows that follow each other so are one step to take back.
+    WalkToRow(u32),
     /// Show the children of a row, or hide all that is below it.
     OpenRow(u32, bool),
     /// Show everything below a row.
@@ -73,6 +75,14 @@ pub enum Command {
     RayKind(RayKind),
     /// Follow a ray that was typed.
     RayText(String),
+    /// Ask for a file of rays.
+    OpenRays,
+    /// Follow a ray of the file, by its row in the list.
+    FollowListed(u32),
+    /// Stop reading or tracing them.
+    CancelRays,
+    /// Put the file of rays away.
+    CloseRays,
     /// Stop following a ray.
     CancelFollow,
     /// Show a structure's steps beside the shown one's, or hide them.
@@ -160,6 +170,8 @@ pub enum Command {
     Help(bool),
     /// Show, or hide, the page of terms.
     Terms(bool),
+    /// Begin the tour at a step, from 0, or leave it.
+    Tour(Option<usize>),
     /// For an audience: larger, and without panels; or back.
     Present(bool),
     /// Split the picture: trace the right part through another structure; or one picture again.
@@ -176,6 +188,8 @@ pub enum Command {
     DropBookmark(usize),
     /// Panels back to their first sizes.
     ResetLayout,
+    /// Bring the focus to the next panel, or to the one before.
+    NextPanel(bool),
     /// In and out of full screen.
     FullScreen,
     /// Close the window.

@@ -1,6 +1,8 @@
 //! The panels of the window, one per file. A panel reads [`super::state::State`] and sends
 //! [`Command`]s; it changes nothing itself.
 
+pub mod announce;
+pub mod as_table;
 pub mod axes;
 pub mod bars;
 pub mod captions;
@@ -9,8 +11,10 @@ pub mod decision;
 pub mod error_side;
 pub mod errors;
 pub mod findings;
+pub mod focus;
 pub mod help;
 pub mod long_list;
+pub mod memory;
 pub mod menu;
 pub mod needs;
 pub mod node;
@@ -19,6 +23,7 @@ pub mod palette;
 pub mod path;
 pub mod prediction;
 pub mod ray;
+pub mod ray_list;
 pub mod scene;
 pub mod selection;
 pub mod split;
@@ -30,6 +35,7 @@ pub mod structure;
 pub mod terms;
 pub mod timings;
 pub mod toolbar;
+pub mod tour;
 pub mod tradeoffs;
 pub mod tree;
 pub mod viewport;

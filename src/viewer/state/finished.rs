@@ -72,6 +72,7 @@ impl State {
         let (beside, kind, speed) = (std::mem::take(&mut self.rays.beside), self.rays.kind, self.rays.speed);
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
         self.shared.give_back(before.columns);
+        self.close_rays();
         self.awaited = None;
         self.forget_beside();
         self.bring_back();

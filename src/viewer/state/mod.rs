@@ -11,13 +11,15 @@ mod exploring;
 mod finished;
 mod following;
 mod keeping;
+mod listing;
 mod refresh;
 mod saving;
+mod touring;
 mod trading;
 
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
-use saving::Saving;
+use saving::{Awaited, Saving};
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -37,9 +39,11 @@ use super::model::{Instances, Model};
 use super::navigation;
 use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
+use super::ray_list::RayList;
 use super::rays::Rays;
 use super::settings::{Settings, Workspace};
 use super::timings::Timings;
+use super::tour::Tour;
 use super::tradeoffs::Tradeoffs;
 use super::tree::Tree;
 use super::workers::{
@@ -103,6 +107,8 @@ pub struct State {
     trace_pool: Pool,
     /// The ray of the Ray workspace.
     pub rays: Rays,
+    /// A file of rays, there.
+    pub ray_list: RayList,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -123,12 +129,14 @@ pub struct State {
     pub help: bool,
     /// The page of terms is open.
     pub terms: bool,
+    /// How far somebody is on the tour, if anybody is.
+    pub tour: Option<Tour>,
     /// Everything is larger and the panels are away, for an audience.
     pub presenting: bool,
     /// The workspace file that is saved or opened.
     saving: Saving,
-    /// A cell to select once its structure is there, by the cells from the root to it.
-    awaited: Option<(Key, Vec<CellId>)>,
+    /// A cell to select once its structure is there.
+    awaited: Option<Awaited>,
     /// Views of the open model that were kept.
     pub bookmarks: Vec<Bookmark>,
     /// The first and the last depth that were chosen, whether or not the shown structure is as deep.
@@ -252,6 +260,7 @@ impl State {
             requested_beside: None,
             trace_pool: pool.clone(),
             rays: Rays::default(),
+            ray_list: RayList::default(),
             picked: None,
             error: None,
             answer: None,
@@ -262,6 +271,7 @@ impl State {
             palette: false,
             help: false,
             terms: false,
+            tour: None,
             presenting: false,
             saving: Saving::default(),
             awaited: None,
@@ -318,9 +328,9 @@ impl State {
             || self.tradeoffs.running.is_some()
     }
 
-    /// Whether the lab runs or the model is checked, which would disturb a measurement.
+    /// Whether the lab runs, the model is checked or a file of rays is traced, which would disturb a measurement.
     pub fn is_checking(&self) -> bool {
-        self.checks.running.is_some() || self.checks.checking.is_some()
+        self.checks.running.is_some() || self.checks.checking.is_some() || self.ray_list.tracing.is_some()
     }
 
     /// Width over height of the viewport.
@@ -345,8 +355,10 @@ impl State {
             || self.predicting.is_some()
             || self.is_exploring()
             || self.rays.following.is_some()
+            || self.ray_list.is_busy()
             || self.saving.is_busy()
             || self.awaited.is_some()
+            || self.is_touring()
             || drawing
     }
 
@@ -405,7 +417,8 @@ impl State {
                 let picked = self.picked.clone().map(|p| Picked { level: level.min(p.path.len().saturating_sub(1)), ..p });
                 self.select(picked);
             }
-            Command::SelectRow(row) => self.select_row(row),
+            Command::SelectRow(row) => self.select_row(row, false),
+            Command::WalkToRow(row) => self.select_row(row, true),
             Command::OpenRow(row, open) => self.open_row(row, open),
             Command::OpenBelow(row) => self.open_below(row),
             Command::CloseTree => self.tree.close_all(),
@@ -418,6 +431,10 @@ impl State {
                 self.follow_again();
             }
             Command::RayText(text) => self.follow_text(&text),
+            Command::OpenRays => self.ask_for_rays(),
+            Command::FollowListed(row) => self.follow_listed(row),
+            Command::CancelRays => self.cancel_rays(),
+            Command::CloseRays => self.close_rays(),
             Command::CancelFollow => self.rays.following = None,
             Command::Beside(id, beside) => self.follow_beside(id, beside),
             Command::Step(column, step) => self.go_to_step(column, step),
@@ -467,6 +484,7 @@ impl State {
             Command::Palette(open) => self.palette = open,
             Command::Help(open) => self.help = open,
             Command::Terms(open) => self.terms = open,
+            Command::Tour(step) => self.go_on_tour(step),
             Command::Present(present) => self.presenting = present,
             Command::PutBeside(id) => self.put_beside(id),
             Command::Divider(at) => self.beside.divider = at.clamp(0.0, 1.0),
@@ -478,7 +496,7 @@ impl State {
                     self.bookmarks.remove(at);
                 }
             }
-            Command::ResetLayout | Command::FullScreen | Command::Quit => {}
+            Command::ResetLayout | Command::NextPanel(_) | Command::FullScreen | Command::Quit => {}
         }
     }
 
@@ -486,7 +504,7 @@ impl State {
         let ray = self.camera.ray(&self.camera.frame(), at, self.aspect());
         (self.tree.selecting, self.tree.restoring) = (None, false);
         if self.settings.workspace == Workspace::Ray {
-            self.follow(ray);
+            self.follow_anew(ray);
         }
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), Arc::clone(&shown.accel), ray).ok();
@@ -535,6 +553,9 @@ impl State {
     fn open(&mut self, model: String) {
         if WorkspaceFile::is_one(&model) {
             return self.open_workspace(model);
+        }
+        if RayList::is_one(&model) {
+            return self.open_rays(model.into());
         }
         self.saving.forget();
         self.asking = None;
@@ -660,6 +681,7 @@ impl State {
         self.advance_causes();
         self.advance_outline();
         self.advance_following();
+        self.advance_ray_list();
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();
@@ -674,6 +696,7 @@ impl State {
         self.advance_statistics();
         self.advance_prediction();
         self.advance_textures();
+        self.advance_tour();
         self.refresh_overlay();
     }
 
