@@ -177,12 +177,16 @@ impl App {
                     panels::structure::show(ui, state, commands);
                     ui.separator();
                     panels::overlay::show(ui, state, commands);
+                    panels::focus::keep_in_sight(ui);
                 });
             })
         };
         let right = if !narrow {
             Panel::right(id("right")).default_size(theme::RIGHT_PANEL).resizable(true).show(ui, |ui| {
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| beside(ui, commands));
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    beside(ui, commands);
+                    panels::focus::keep_in_sight(ui);
+                });
             })
         } else {
             let (sign, name) = match workspace {
@@ -226,7 +230,10 @@ impl App {
                 Frame::NONE.fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(theme::GUTTER as i8, theme::GRID as i8));
             bar.show(ui, |ui| {
                 ui.set_width(ui.available_width());
-                ScrollArea::horizontal().show(ui, |ui| panels::toolbar::show(ui, state, commands));
+                ScrollArea::horizontal().show(ui, |ui| {
+                    panels::toolbar::show(ui, state, commands);
+                    panels::focus::keep_in_sight(ui);
+                });
             });
             error(ui, state, commands);
             let view = ui.available_rect_before_wrap();

@@ -15,20 +15,27 @@ pub fn ring(ui: &Ui, rect: Rect) {
 struct Last {
     focused: Option<Id>,
     by_keys: bool,
+    /// They have done so in the last frame.
+    fresh: bool,
+}
+
+/// Where that is remembered.
+fn place() -> Id {
+    Id::unique("where keys go")
 }
 
 /// Draws the ring around whatever keys have brought the focus to. Comes after everything else.
 pub fn show(ui: &Ui) {
-    let (ctx, id) = (ui.ctx(), Id::unique("where keys go"));
+    let (ctx, id) = (ui.ctx(), place());
     let focused = ctx.memory(egui::Memory::focused);
     let pressed = ctx.input(|i| i.pointer.any_down() || i.pointer.any_released());
     let mut last: Last = ui.data(|d| d.get_temp(id)).unwrap_or_default();
-    if pressed {
-        last.by_keys = false;
-    } else if focused != last.focused {
-        last.by_keys = true;
-    }
+    last.fresh = focused != last.focused && !pressed;
+    last.by_keys = (last.by_keys || last.fresh) && !pressed;
     last.focused = focused;
+    if last.fresh {
+        ctx.request_repaint(); // what is out of sight is scrolled to in the next frame
+    }
     ui.data_mut(|d| d.insert_temp(id, last));
     let Some(widget) = focused.filter(|_| last.by_keys).and_then(|focused| ctx.read_response(focused)) else { return };
     if !widget.interact_rect.is_positive() {
@@ -36,6 +43,17 @@ pub fn show(ui: &Ui) {
     }
     let painter = ctx.layer_painter(LayerId::new(Order::Tooltip, id));
     painter.rect_stroke(widget.interact_rect, theme::GRID, theme::focus_ring(Palette::in_ui(ui)), StrokeKind::Middle);
+}
+
+/// Scrolls to what keys have just brought the focus to, if it is in this part of the window; called inside what is scrolled,
+/// after all that is in it.
+pub fn keep_in_sight(ui: &Ui) {
+    let last: Last = ui.data(|d| d.get_temp(place())).unwrap_or_default();
+    let widget = last.focused.filter(|_| last.fresh).and_then(|focused| ui.ctx().read_response(focused));
+    let here = widget.filter(|w| w.layer_id == ui.layer_id() && ui.min_rect().contains(w.rect.center()));
+    if let Some(widget) = here.filter(|widget| !ui.clip_rect().contains_rect(widget.rect)) {
+        ui.scroll_to_rect(widget.rect, None);
+    }
 }
 
 /// Brings the focus to the first thing of the next panel that takes keys, or of the one before.
