@@ -213,9 +213,12 @@ impl Outline {
     }
 
     /// Makes the cells from the root to one.
-    pub fn cells(&self, accel: &dyn Accel, at: u32) -> Vec<Cell> {
+    ///
+    /// # Errors
+    /// [`Cancelled`] if asked to stop.
+    pub fn cells(&self, accel: &dyn Accel, at: u32, cancel: &Cancel) -> Result<Vec<Cell>, Cancelled> {
         let ids: Vec<CellId> = self.path(at).into_iter().map(|at| self.id(at)).collect();
-        cells_along(accel, &ids)
+        cells_along(accel, &ids, cancel)
     }
 
     /// Walks the cells below and including one, which has this row, with their rows: none of those that are left out.
@@ -281,26 +284,36 @@ impl Outline {
     }
 }
 
-/// Makes the cells along a path from the root; nothing if the structure does not have them.
-pub fn cells_along(accel: &dyn Accel, path: &[CellId]) -> Vec<Cell> {
+/// Makes the cells along a path from the root; nothing if the structure does not have them. A grid has millions of children,
+/// of which each is looked at.
+///
+/// # Errors
+/// [`Cancelled`] if asked to stop.
+pub fn cells_along(accel: &dyn Accel, path: &[CellId], cancel: &Cancel) -> Result<Vec<Cell>, Cancelled> {
     let root = accel.root();
     if path.first() != Some(&root.id) {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let mut cells = vec![root];
+    let mut looked = 0usize;
     for id in &path[1..] {
-        let mut found = None;
+        cancel.check()?;
+        let (mut found, mut stopped) = (None, Ok(()));
         accel.children(&cells[cells.len() - 1], &mut |child| {
+            looked += 1;
+            if looked.is_multiple_of(PER_CHECK) {
+                stopped = cancel.check();
+            }
             if child.id == *id {
                 found = Some(child);
-                return ControlFlow::Break(());
             }
-            ControlFlow::Continue(())
+            if found.is_some() || stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        let Some(found) = found else { return Vec::new() };
+        stopped?;
+        let Some(found) = found else { return Ok(Vec::new()) };
         cells.push(found);
     }
-    cells
+    Ok(cells)
 }
 
 /// What rows are ranked by.
@@ -596,11 +609,14 @@ mod tests {
             let (accel, outline) = of(model, registry::find(id).expect("registered"), &Budget::new(1 << 30));
             let outline = outline.expect("small");
             for at in (0..outline.len()).step_by(61) {
-                let cells = outline.cells(accel.as_ref(), at);
+                let cells = outline.cells(accel.as_ref(), at, &Cancel::new()).expect("not cancelled");
                 let path: Vec<CellId> = cells.iter().map(|cell| cell.id).collect();
                 assert_eq!(outline.find(&path), Some(at), "{model} {id}");
                 assert_eq!(cells.len(), outline.path(at).len());
             }
+            let cancel = Cancel::new();
+            cancel.cancel();
+            assert_eq!(outline.cells(accel.as_ref(), outline.len() - 1, &cancel), Err(Cancelled), "{model} {id}");
             assert!(outline.find(&[CellId { instance: 7, node: u32::MAX }]).is_none());
             let mut walked = 0;
             let whole = outline.walk_below(accel.as_ref(), &accel.root(), 0, &mut |cell, row| {

@@ -13,6 +13,7 @@ use crate::scene::Section;
 /// How the window begins. What is not said comes from the last time.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Options of the window")]
+#[command(group(clap::ArgGroup::new("ray").args(["follow", "rays"])))]
 pub struct Args {
     /// A file (.gltf, .glb, .obj, .ply, .stl), builtin:NAME, or builtin:NAME?triangles=N.
     #[arg(help_heading = None::<&str>)]
@@ -85,12 +86,19 @@ pub struct Args {
     /// view, 1,1 the upper right.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with_all = ["select", "measure", "check", "errors"])]
     pub follow: Option<[f32; 2]>,
-    /// With that, structures whose steps stand beside, at most three, between commas.
-    #[arg(long, value_name = "IDS", value_delimiter = ',', requires = "follow")]
+    /// Begin in the Ray workspace with that file of rays, six or eight numbers a line or an array of NumPy; with --screenshot,
+    /// follow the dearest of them first.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["follow", "select", "measure", "check", "errors"])]
+    pub rays: Option<PathBuf>,
+    /// With one of these, structures whose steps stand beside, at most three, between commas.
+    #[arg(long, value_name = "IDS", value_delimiter = ',', requires = "ray")]
     pub beside: Vec<One>,
     /// Compare the whole view with brute force before the picture is saved.
     #[arg(long, requires = "screenshot", conflicts_with_all = ["select", "measure", "check", "errors"])]
     pub check_brute: bool,
+    /// Begin the tour at this step, 1 to 6.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=6), conflicts_with_all = ["measure", "check", "errors", "select", "follow", "rays"])]
+    pub tour: Option<u8>,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
@@ -131,8 +139,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         try_plane: args.try_plane,
         film: args.film,
         follow: args.follow,
+        rays: args.rays,
         beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),
         brute: args.check_brute,
+        tour: args.tour.map(|step| usize::from(step) - 1),
         pace: args.pace,
         endure: args.endure,
         screenshot: args.screenshot,

@@ -30,6 +30,7 @@ pub mod peers;
 pub mod plot;
 mod quality;
 mod raster;
+pub mod ray_file;
 mod rays;
 mod report;
 mod sah_curve;

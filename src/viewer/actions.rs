@@ -71,6 +71,10 @@ const LARGER_UNSHIFTED: KeyboardShortcut = with(Modifiers::COMMAND, Key::Equals)
 pub const SMALLER: KeyboardShortcut = with(Modifiers::COMMAND, Key::Minus);
 /// The system's size.
 pub const SAME_SIZE: KeyboardShortcut = with(Modifiers::COMMAND, Key::Num0);
+/// Brings the focus to the next panel.
+const NEXT_PANEL: KeyboardShortcut = with(Modifiers::NONE, Key::F6);
+/// And to the one before.
+const PANEL_BEFORE: KeyboardShortcut = with(Modifiers::SHIFT, Key::F6);
 /// Opens the palette.
 pub const PALETTE: KeyboardShortcut = with(Modifiers::COMMAND, Key::P);
 /// For an audience.
@@ -332,6 +336,10 @@ fn film(list: &mut List, state: &State) {
 }
 
 fn ray(list: &mut List, state: &State) {
+    let listed = &state.ray_list;
+    list.add("Open rays…", Command::OpenRays).if_possible(state.model.is_some());
+    list.add("Put the file of rays away", Command::CloseRays).if_possible(listed.file.is_some());
+    list.add("Follow the dearest ray of the file", Command::FollowListed(0)).if_possible(listed.traced.is_some());
     let rays = &state.rays;
     let there = !rays.columns.is_empty() && state.settings.workspace == Workspace::Ray;
     let go = |to: usize| Command::Step(rays.lead, to);
@@ -395,7 +403,10 @@ fn window(list: &mut List, state: &State) {
     let present = if state.presenting { "End the presentation" } else { "Presentation: larger, without panels" };
     list.add(present, Command::Present(!state.presenting)).key(PRESENT);
     list.add("Terms, with formulas and sources", Command::Terms(true)).if_possible(!state.terms);
+    list.add("Tour in six steps", Command::Tour(Some(0))).if_possible(state.tour.is_none());
     list.add("Full screen", Command::FullScreen).key(FULL_SCREEN);
+    list.add("Next panel", Command::NextPanel(true)).key(NEXT_PANEL);
+    list.add("Panel before", Command::NextPanel(false)).key(PANEL_BEFORE);
     list.add("Reset layout", Command::ResetLayout);
     list.add("All commands", Command::Palette(true)).key(PALETTE);
     let help = list.add("Keys and mouse", Command::Help(!state.help));

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, RichText, ScrollArea, Ui, ViewportCommand};
+use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rect, RichText, ScrollArea, Ui, ViewportCommand};
 
 use super::animation::Animation;
 use super::command::Command;
@@ -18,6 +18,7 @@ use super::screenshot::Screenshot;
 use super::settings::{Settings, ThemeChoice, Workspace};
 use super::state::State;
 use super::theme::{self, Palette};
+use super::tour;
 use super::workers::Shared;
 use crate::sys::thread_time;
 use crate::task::{Budget, Pool};
@@ -26,8 +27,6 @@ use crate::task::{Budget, Pool};
 const SETTINGS: &str = "settings";
 /// The layout of a window that the command line drives.
 const SCRIPTED: u64 = u64::MAX;
-/// What opens when nothing else was asked for.
-const FIRST_SCENE: &str = "builtin:lecture";
 
 /// The program's window.
 pub struct App {
@@ -38,6 +37,8 @@ pub struct App {
     pace: Pace,
     /// How long this thread has worked for the present frame, besides having it drawn.
     own_work: Duration,
+    /// Where the panels were last drawn, in the order of the keys.
+    panels: Vec<Rect>,
     /// Grows when the layout is reset: panels forget their sizes with their names.
     layout: u64,
 }
@@ -69,6 +70,7 @@ impl App {
         let stored: Option<Settings> = cc.storage.and_then(|s| eframe::get_value(s, SETTINGS));
         let mut settings = if options.is_scripted() { Settings::default() } else { stored.unwrap_or_default() };
         options.apply(&mut settings);
+        let tour = options.tour.or_else(|| is_first_start(cc, &options, &settings).then_some(0));
 
         let ctx = cc.egui_ctx.clone();
         let budget = options.memory_mib.or(settings.memory_mib).map_or_else(Budget::half_of_machine, Budget::of_mib);
@@ -77,12 +79,26 @@ impl App {
         state.first_camera = options.camera;
         state.first_section = options.section;
         state.tradeoffs.plot = options.errors.unwrap_or_default();
-        state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| FIRST_SCENE.to_owned())));
+        state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| tour::LECTURE.to_owned())));
+        if let Some(rays) = options.rays.clone() {
+            state.await_rays(rays);
+        }
+        if tour.is_some() {
+            state.carry_out(Command::Tour(tour));
+        }
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
         let layout = if options.is_scripted() { SCRIPTED } else { 0 };
         let animation = options.animate.clone().map(Animation::new);
-        let app =
-            Self { state, commands: Vec::new(), screenshot, animation, pace: Pace::default(), own_work: Duration::ZERO, layout };
+        let app = Self {
+            state,
+            commands: Vec::new(),
+            screenshot,
+            animation,
+            pace: Pace::default(),
+            own_work: Duration::ZERO,
+            panels: Vec::new(),
+            layout,
+        };
         app.follow_settings(&cc.egui_ctx);
         Ok(app)
     }
@@ -115,6 +131,7 @@ impl App {
                     let full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
                     ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!full));
                 }
+                Command::NextPanel(forward) => panels::focus::go(ctx, &self.panels, forward),
                 Command::ResetLayout => self.layout = self.layout.wrapping_add(1),
                 command => self.state.carry_out(command),
             }
@@ -139,7 +156,8 @@ impl App {
         egui::Id::unique((name, self.layout))
     }
 
-    fn sides(&mut self, ui: &mut Ui) {
+    /// Draws the panels at the left and at the right; returns where they are.
+    fn sides(&mut self, ui: &mut Ui) -> [Rect; 2] {
         let (state, commands) = (&self.state, &mut self.commands);
         let workspace = state.settings.workspace;
         let beside = move |ui: &mut Ui, commands: &mut Commands| {
@@ -161,7 +179,7 @@ impl App {
         };
         let narrow = ui.available_width() < theme::FOLD_BELOW;
         let id = |name: &str| egui::Id::unique((name, self.layout));
-        if workspace == Workspace::Structure {
+        let left = if workspace == Workspace::Structure {
             let tree = Panel::left(id("tree")).default_size(theme::TREE_PANEL).resizable(true);
             tree.show(ui, |ui| {
                 // The tree takes what the settings below it leave.
@@ -170,7 +188,7 @@ impl App {
                     panels::section::show(ui, state, commands);
                 });
                 CentralPanel::no_frame().show(ui, |ui| panels::tree::show(ui, state, commands));
-            });
+            })
         } else {
             Panel::left(id("left")).default_size(theme::LEFT_PANEL).resizable(true).show(ui, |ui| {
                 ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -180,13 +198,17 @@ impl App {
                     ui.separator();
                     panels::overlay::show(ui, state, commands);
                     panels::section::show(ui, state, commands);
+                    panels::focus::keep_in_sight(ui);
                 });
-            });
-        }
-        if !narrow {
+            })
+        };
+        let right = if !narrow {
             Panel::right(id("right")).default_size(theme::RIGHT_PANEL).resizable(true).show(ui, |ui| {
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| beside(ui, commands));
-            });
+                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                    beside(ui, commands);
+                    panels::focus::keep_in_sight(ui);
+                });
+            })
         } else {
             let (sign, name) = match workspace {
                 Workspace::View => ("Σ", "Statistics"),
@@ -203,11 +225,13 @@ impl App {
                 .response
                 .accessible_name(name)
                 .on_hover_text(name);
-            });
-        }
+            })
+        };
+        [left.response.rect, right.response.rect]
     }
 
-    fn centre(&mut self, ui: &mut Ui) {
+    /// Draws the view, and what stands below it; returns where they are.
+    fn centre(&mut self, ui: &mut Ui) -> Vec<Rect> {
         let below: Option<(&str, f32, Below)> = match self.state.settings.workspace {
             Workspace::View => Some(("timings", theme::BOTTOM_PANEL, panels::timings::show)),
             Workspace::Structure if self.state.filming.film.is_some() => Some(("film", theme::FILM_PANEL, panels::film::show)),
@@ -219,22 +243,35 @@ impl App {
         let below = below.filter(|_| !self.state.presenting).map(|(name, height, show)| (self.panel(name), height, show));
         let (state, commands) = (&self.state, &mut self.commands);
         let mut size_px = state.size_px;
-        if let Some((id, height, show)) = below {
-            Panel::bottom(id).default_size(height).resizable(true).show(ui, |ui| show(ui, state, commands));
-        }
-        CentralPanel::no_frame().show(ui, |ui| {
+        let below = below.map(|(id, height, show)| {
+            Panel::bottom(id).default_size(height).resizable(true).show(ui, |ui| show(ui, state, commands)).response.rect
+        });
+        let view = CentralPanel::no_frame().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             let bar =
                 Frame::NONE.fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(theme::GUTTER as i8, theme::GRID as i8));
             bar.show(ui, |ui| {
                 ui.set_width(ui.available_width());
-                ScrollArea::horizontal().show(ui, |ui| panels::toolbar::show(ui, state, commands));
+                ScrollArea::horizontal().show(ui, |ui| {
+                    panels::toolbar::show(ui, state, commands);
+                    panels::focus::keep_in_sight(ui);
+                });
             });
             error(ui, state, commands);
+            let view = ui.available_rect_before_wrap();
             size_px = panels::viewport::show(ui, state, commands);
+            panels::tour::show(ui, view, state, commands);
         });
         self.state.size_px = size_px;
+        std::iter::once(view.response.rect).chain(below).collect()
     }
+}
+
+/// Whether nobody has used the program yet, as far as it remembers: a window that remembers nothing shows no tour, nor one
+/// that was asked for a model.
+fn is_first_start(cc: &eframe::CreationContext<'_>, options: &ViewerOptions, settings: &Settings) -> bool {
+    let used = settings.toured || !settings.recent.is_empty();
+    cc.storage.is_some() && !used && options.model.is_none() && !options.is_scripted()
 }
 
 /// Draws a panel below the view.
@@ -257,7 +294,8 @@ fn error(ui: &mut Ui, state: &State, commands: &mut Commands) {
                     commands.push(Command::Dismiss);
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(palette.fail)).wrap());
+                    let text = ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(palette.fail)).wrap());
+                    panels::announce::at_once(&text);
                 });
             });
         });
@@ -271,6 +309,7 @@ impl eframe::App for App {
             self.pace.own_work(std::mem::take(&mut self.own_work));
             self.take_dropped(ctx);
             panels::menu::keys(ctx, &self.state, &mut self.commands);
+            panels::focus::dividers(ctx);
         }
         if !self.is_scripted() {
             let hidden = |i: &egui::InputState| i.viewport().minimized == Some(true) || i.viewport().occluded == Some(true);
@@ -308,20 +347,22 @@ impl eframe::App for App {
         if !is_repeated(ui.ctx()) {
             self.pace.frame(ui_secs, &self.state);
         }
-        Panel::top(self.panel("menu"))
+        let menu = Panel::top(self.panel("menu"))
             .exact_size(theme::TOP_BAR)
             .show(ui, |ui| panels::menu::show(ui, &self.state, &mut self.commands));
-        Panel::bottom(self.panel("status")).exact_size(theme::ROW).show(ui, |ui| {
+        let status = Panel::bottom(self.panel("status")).exact_size(theme::ROW).show(ui, |ui| {
             panels::status::show(ui, &self.state, ui_secs, &mut self.commands);
         });
-        if !self.state.presenting {
-            self.sides(ui);
-        }
-        self.centre(ui);
+        let sides = (!self.state.presenting).then(|| self.sides(ui));
+        let (left, right) = (sides.map(|sides| sides[0]), sides.map(|sides| sides[1]));
+        let centre = self.centre(ui);
+        let inner = left.into_iter().chain(centre).chain(right);
+        self.panels = std::iter::once(menu.response.rect).chain(inner).chain([status.response.rect]).collect();
         panels::terms::show(ui, &self.state, &mut self.commands);
         panels::help::show(ui, &self.state, &mut self.commands);
         panels::path::show(ui, &self.state, &mut self.commands);
         panels::palette::show(ui, &self.state, &mut self.commands);
+        panels::focus::show(ui);
         if is_repeated(ui.ctx()) {
             // The same hands were seen in the first pass.
             self.commands.clear();

@@ -67,6 +67,8 @@ pub enum Command {
     SelectLevel(usize),
     /// Select a cell by its row in the tree.
     SelectRow(u32),
+    /// The same by an arrow key: rows that follow each other so are one step to take back.
+    WalkToRow(u32),
     /// Show the children of a row, or hide all that is below it.
     OpenRow(u32, bool),
     /// Show everything below a row.
@@ -95,6 +97,14 @@ pub enum Command {
     RayKind(RayKind),
     /// Follow a ray that was typed.
     RayText(String),
+    /// Ask for a file of rays.
+    OpenRays,
+    /// Follow a ray of the file, by its row in the list.
+    FollowListed(u32),
+    /// Stop reading or tracing them.
+    CancelRays,
+    /// Put the file of rays away.
+    CloseRays,
     /// Stop following a ray.
     CancelFollow,
     /// Let the next drag in the view mark a rectangle that is compared with brute force, or no longer.
@@ -198,6 +208,8 @@ pub enum Command {
     Help(bool),
     /// Show, or hide, the page of terms.
     Terms(bool),
+    /// Begin the tour at a step, from 0, or leave it.
+    Tour(Option<usize>),
     /// For an audience: larger, and without panels; or back.
     Present(bool),
     /// Split the picture: trace the right part through another structure; or one picture again.
@@ -218,6 +230,8 @@ pub enum Command {
     DropBookmark(usize),
     /// Panels back to their first sizes.
     ResetLayout,
+    /// Bring the focus to the next panel, or to the one before.
+    NextPanel(bool),
     /// In and out of full screen.
     FullScreen,
     /// Close the window.

@@ -4,12 +4,18 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
+use super::ray_list::ENDINGS;
 use super::workspace_file::ENDING;
 
 /// Something that asks the user for a file. Tests put their own in its place.
 pub trait FileDialog {
     /// Opens the dialog; its answer comes later, `None` for a dialog that was closed.
     fn pick(&self, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>>;
+
+    /// The same for a file of rays.
+    fn pick_rays(&self, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+        self.pick(wake)
+    }
 
     /// The same for a file to be written, with the name that it would have.
     fn save(&self, name: &str, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>>;
@@ -28,6 +34,11 @@ impl FileDialog for SystemDialog {
     fn pick(&self, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
         let dialog = rfd::AsyncFileDialog::new().set_title("Open a model or a workspace");
         answer(dialog.add_filter("3D models and workspaces", MODELS).pick_file(), wake)
+    }
+
+    fn pick_rays(&self, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+        let dialog = rfd::AsyncFileDialog::new().set_title("Open rays");
+        answer(dialog.add_filter("Rays", &ENDINGS).pick_file(), wake)
     }
 
     fn save(&self, name: &str, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {

@@ -35,6 +35,8 @@ pub enum Kind {
     Overlay,
     /// Moving the section.
     Section,
+    /// Walking over rows with the arrow keys, however slowly.
+    Walk,
 }
 
 impl<T> Default for History<T> {
@@ -46,7 +48,8 @@ impl<T> Default for History<T> {
 impl<T> History<T> {
     /// Remembers the present state, which is about to be left by a change of some kind at `now`.
     pub fn leave(&mut self, present: T, kind: Kind, now: Instant) {
-        let together = self.last.is_some_and(|(last, at)| last == kind && now.duration_since(at) < TOGETHER);
+        let in_time = |at| kind == Kind::Walk || now.duration_since(at) < TOGETHER;
+        let together = self.last.is_some_and(|(last, at)| last == kind && in_time(at));
         self.last = (kind != Kind::Single).then_some((kind, now));
         self.ahead.clear();
         if !together {
@@ -149,6 +152,18 @@ mod tests {
         assert_eq!(history.back(3), Some(2));
         history.leave(2, Kind::Single, at(2001));
         assert!(!history.has_forward() && history.has_back());
+    }
+
+    #[test]
+    fn a_walk_is_one_step_at_any_pace_until_something_else_is_done() {
+        let start = Instant::now();
+        let at = |secs| start + Duration::from_secs(secs);
+        let mut history = History::default();
+        history.leave(0, Kind::Walk, at(0));
+        history.leave(1, Kind::Walk, at(30));
+        history.leave(2, Kind::Single, at(31));
+        history.leave(3, Kind::Walk, at(32));
+        assert_eq!((history.back(4), history.back(3), history.back(2), history.back(0)), (Some(3), Some(2), Some(0), None));
     }
 
     #[test]

@@ -55,6 +55,11 @@ impl std::fmt::Debug for Built {
 pub struct Kept(Vec<Built>);
 
 impl Kept {
+    /// All of them, the last used first.
+    pub fn iter(&self) -> impl Iterator<Item = &Built> {
+        self.0.iter().rev()
+    }
+
     /// The structure of that key, which counts as used.
     pub fn take_up(&mut self, key: &Key) -> Option<Built> {
         let at = self.0.iter().position(|b| b.key == *key)?;

@@ -56,10 +56,14 @@ pub struct ViewerOptions {
     /// Begin in the Ray workspace; with `screenshot`, follow the ray of that place first: (-1, -1) is the lower left corner of
     /// the view, (1, 1) the upper right.
     pub follow: Option<[f32; 2]>,
+    /// Begin in the Ray workspace, with that file of rays; with `screenshot`, follow the dearest of them first.
+    pub rays: Option<PathBuf>,
     /// Structures whose steps stand beside the shown one's.
     pub beside: Vec<String>,
     /// With `screenshot`, compare the whole view with brute force first.
     pub brute: bool,
+    /// Begin the tour at this step, from 0; without it, the first window of all begins it at the first.
+    pub tour: Option<usize>,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
     /// Switch structures a thousand times and open fifty models before that, to see what becomes of the memory.
@@ -95,7 +99,7 @@ impl ViewerOptions {
         if self.select.is_some() || self.film.is_some() {
             settings.workspace = Workspace::Structure;
         }
-        if self.follow.is_some() {
+        if self.follow.is_some() || self.rays.is_some() {
             settings.workspace = Workspace::Ray;
         }
         if let Some(plot) = self.errors {

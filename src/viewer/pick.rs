@@ -29,24 +29,30 @@ pub struct Picked {
 
 impl Picked {
     /// A cell by its row.
-    pub fn of_row(accel: &dyn Accel, outline: &Outline, row: u32) -> Self {
-        let path = outline.cells(accel, row);
+    ///
+    /// # Errors
+    /// [`Cancelled`] if asked to stop.
+    pub fn of_row(accel: &dyn Accel, outline: &Outline, row: u32, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let path = outline.cells(accel, row, cancel)?;
         let facts = outline.row(row);
         let kind = if facts.is_leaf() { "Leaf" } else { "Node" };
         let (references, share) = (format::count(facts.references.into()), format::share(facts.share));
         let text = format!("{kind} {} at depth {}: {references} triangles, {share} of the SAH cost", facts.id.node, facts.depth);
-        Self::at_end(accel, path, text)
+        Ok(Self::at_end(accel, path, text))
     }
 
     /// A cell by those from the root to it.
-    pub fn of_path(accel: &dyn Accel, path: &[CellId]) -> Self {
-        let path = cells_along(accel, path);
+    ///
+    /// # Errors
+    /// [`Cancelled`] if asked to stop.
+    pub fn of_path(accel: &dyn Accel, path: &[CellId], cancel: &Cancel) -> Result<Self, Cancelled> {
+        let path = cells_along(accel, path, cancel)?;
         let text = path.last().map(|cell| {
             let kind = if cell.is_leaf() { "Leaf" } else { "Node" };
             format!("{kind} {} at depth {}", cell.id.node, cell.depth)
         });
         let text = text.unwrap_or_else(|| "The cell that was selected is not there any more".to_owned());
-        Self::at_end(accel, path, text)
+        Ok(Self::at_end(accel, path, text))
     }
 
     /// The last of cells within each other.

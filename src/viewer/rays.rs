@@ -33,6 +33,8 @@ pub struct Rays {
     pub at: usize,
     /// The ray, on its way.
     pub following: Option<Following>,
+    /// The structure and the step of a workspace file, until the ray is followed.
+    pub awaited: Option<(String, usize)>,
     /// When the last step was played, while it plays.
     pub playing: Option<Instant>,
     /// Steps a second.
@@ -59,6 +61,7 @@ impl Default for Rays {
             columns: Vec::new(),
             lead: 0,
             at: 0,
+            awaited: None,
             following: None,
             playing: None,
             speed: 4.0,
@@ -91,6 +94,20 @@ impl Rays {
     pub fn go(&mut self, column: usize, step: usize) {
         self.lead = column.min(self.columns.len().saturating_sub(1));
         self.at = step.min(self.last());
+    }
+
+    /// The structure that leads, and its step: those that are awaited, if any are.
+    pub fn place(&self) -> Option<(String, usize)> {
+        let now = || self.columns.get(self.lead).map(|lead| (lead.built.key.entry.id.to_owned(), self.at));
+        self.awaited.clone().or_else(now)
+    }
+
+    /// Goes to the awaited step, if there is one.
+    pub fn go_to_awaited(&mut self) {
+        let Some((id, at)) = self.awaited.take() else { return };
+        if let Some(column) = self.columns.iter().position(|column| column.built.key.entry.id == id) {
+            self.go(column, at);
+        }
     }
 
     /// Plays on, if it is time; returns when it will be next, and whether something has changed.

@@ -166,9 +166,13 @@ impl Screenshot {
 
 /// What shows a ray in several structures.
 fn follow(options: &ViewerOptions) -> Vec<Command> {
-    let Some(at) = options.follow else { return Vec::new() };
+    let first = match (options.follow, &options.rays) {
+        (Some(at), _) => Command::Pick(at.into()),
+        (None, Some(_)) => Command::FollowListed(0),
+        (None, None) => return Vec::new(),
+    };
     let beside = options.beside.iter().filter_map(|id| registry::find(id)).map(|entry| Command::Beside(entry.id, true));
-    std::iter::once(Command::Pick(at.into())).chain(beside).chain([Command::Step(0, 0)]).collect()
+    std::iter::once(first).chain(beside).chain([Command::Step(0, 0)]).collect()
 }
 
 impl Screenshot {

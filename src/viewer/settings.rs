@@ -47,6 +47,8 @@ pub struct Settings {
     pub scale: f32,
     /// The memory budget in MiB; `None` for half of the machine.
     pub memory_mib: Option<u64>,
+    /// The tour was shown.
+    pub toured: bool,
 }
 
 /// The most files in the list of recent ones.
@@ -74,6 +76,7 @@ impl Default for Settings {
             navigation: Navigation::default(),
             scale: 1.0,
             memory_mib: None,
+            toured: false,
         }
     }
 }
@@ -298,6 +301,7 @@ impl Settings {
             navigation: own.navigation,
             scale: own.scale,
             memory_mib: own.memory_mib,
+            toured: own.toured,
             ..other.clone()
         };
     }

@@ -55,10 +55,14 @@ pub const SECTION: Color32 = Color32::from_rgb(242, 177, 52);
 pub const UNKNOWN: Color32 = Color32::from_rgb(128, 128, 128);
 /// The width and height of a page of text.
 pub const PAGE: f32 = 480.0;
+/// The width of the card of the tour.
+pub const TOUR_CARD: f32 = 80.0 * GRID;
 /// What everything is enlarged by for an audience, and lines besides.
 pub const PRESENTED: f32 = 1.5;
 /// The width of lines for an audience.
 pub const PRESENTED_LINES: f32 = 2.0;
+/// The width of the list of rays beside their steps.
+pub const RAY_LIST: f32 = 64.0 * GRID;
 /// The height of menus that show all of their entries.
 pub const LONG_MENU: f32 = 14.0 * ROW;
 /// The height of the steps of a ray.
@@ -91,6 +95,8 @@ pub const HISTOGRAM: f32 = 4.0 * ROW;
 pub const HANDLE: f32 = 6.0;
 /// The size of a structure's mark.
 pub const MARK: f32 = 9.0;
+/// The width of the line around what has the focus.
+const FOCUS_RING: f32 = 2.0;
 /// How often progress bars move.
 pub const PROGRESS_INTERVAL: std::time::Duration = std::time::Duration::from_millis(50);
 /// The height of bars in tables.
@@ -107,6 +113,11 @@ pub fn numeral() -> TextStyle {
 pub const fn plate(palette: &Palette) -> Color32 {
     let [r, g, b, _] = palette.background.to_array();
     Color32::from_rgba_premultiplied(r / 8 * 7, g / 8 * 7, b / 8 * 7, 224)
+}
+
+/// The line around what has the focus.
+pub const fn focus_ring(palette: &Palette) -> Stroke {
+    Stroke { width: FOCUS_RING, color: palette.accent_text }
 }
 
 /// Gives egui both looks, and lets it follow the system's choice.

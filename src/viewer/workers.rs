@@ -233,15 +233,15 @@ pub fn outline(shared: &Shared, shown: &Built) -> std::io::Result<Outlining> {
 
 /// Starts making the cells along a path of them.
 pub fn select_path(shared: &Shared, accel: Arc<dyn Accel>, path: Vec<CellId>) -> std::io::Result<Selecting> {
-    Job::spawn("select", shared.waker(), move |_, _| Picked::of_path(accel.as_ref(), &path))
+    Job::spawn("select", shared.waker(), move |cancel, _| Picked::of_path(accel.as_ref(), &path, cancel))
 }
 
 /// The cells of a row, on their way.
-pub type Selecting = Job<Picked>;
+pub type Selecting = Job<Result<Picked, Cancelled>>;
 
 /// Starts making the cells from the root to a row: a grid has millions of children.
 pub fn select(shared: &Shared, accel: Arc<dyn Accel>, outline: Arc<Outline>, row: u32) -> std::io::Result<Selecting> {
-    Job::spawn("select", shared.waker(), move |_, _| Picked::of_row(accel.as_ref(), &outline, row))
+    Job::spawn("select", shared.waker(), move |cancel, _| Picked::of_row(accel.as_ref(), &outline, row, cancel))
 }
 
 /// Why rays are slow, and the cells that say so, on their way; or why there is none: nothing to say where it was stopped.

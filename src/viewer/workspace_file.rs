@@ -33,6 +33,12 @@ pub struct WorkspaceFile {
     pub ray: Option<String>,
     /// Whether that is followed, or one that leaves what it meets.
     pub ray_kind: String,
+    /// The structure whose step is chosen, and which step that is.
+    #[serde(default)]
+    pub step: Option<(String, usize)>,
+    /// The plane that is tried in the selected cell: the number of its axis, and where from 0 to 1.
+    #[serde(default)]
+    pub tried: Option<(usize, f64)>,
     /// Structures whose steps stand beside.
     pub beside: Vec<String>,
     /// The views that were kept.
@@ -59,6 +65,8 @@ impl WorkspaceFile {
             selected: Vec::new(),
             ray: None,
             ray_kind: RayKind::Primary.id().to_owned(),
+            step: None,
+            tried: None,
             beside: Vec::new(),
             bookmarks: Vec::new(),
             split: None,

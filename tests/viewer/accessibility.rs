@@ -2,11 +2,15 @@
 
 use std::collections::BTreeSet;
 
+use boxwood::geometry::Axis;
 use boxwood::render::Mode;
-use eframe::egui::{Key, Modifiers, Role};
+use boxwood::viewer::format;
+use boxwood::viewer::theme::{self, Palette};
+use eframe::egui::accesskit::Live;
+use eframe::egui::{Key, Modifiers, Rect, Role, Shape, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use crate::window::Window;
+use crate::window::{Setup, Window};
 
 #[track_caller]
 fn all_named(w: &mut Window, when: &str) {
@@ -133,4 +137,161 @@ fn what_is_written_over_the_picture_is_said_too() {
     w.step();
     let change = w.state().change.as_ref().expect("just now").0.clone();
     describes(&w, &[&format!("{change}.")]);
+}
+
+/// The name of what has the focus, and where it is.
+fn focused(w: &Window) -> Option<(String, Rect)> {
+    let node = w.harness.query_by(|n| n.is_focused() && n.role() != Role::Window)?;
+    Some((node.accesskit_node().label().unwrap_or_default(), node.rect()))
+}
+
+fn gather_rings(shape: &Shape, ring: eframe::egui::Stroke, rings: &mut Vec<Rect>) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather_rings(shape, ring, rings)),
+        Shape::Rect(rect) if rect.stroke == ring => rings.push(rect.rect),
+        _ => {}
+    }
+}
+
+/// The rings of the last frame that show where keys go.
+fn rings(w: &Window) -> Vec<Rect> {
+    let ring = theme::focus_ring(Palette::of(w.harness.ctx.theme()));
+    let mut rings = Vec::new();
+    w.harness.output().shapes.iter().for_each(|clipped| gather_rings(&clipped.shape, ring, &mut rings));
+    rings
+}
+
+/// Whether a ring is around what has the focus.
+fn is_ringed(w: &Window) -> bool {
+    focused(w).is_some_and(|(_, rect)| rings(w).iter().any(|ring| ring.expand(2.0).contains_rect(rect)))
+}
+
+#[test]
+fn where_tab_has_come_to_is_seen() {
+    let mut w = Window::lecture();
+    let mut wanted = BTreeSet::from([
+        "File",
+        "Help",
+        "BVH",
+        "Grid",
+        "Leaves only",
+        "Depth",
+        "Picture",
+        "Measure",
+        "3D viewport",
+        "Show as table: leaves",
+    ]);
+    assert!(rings(&w).is_empty());
+    for _ in 0..90 {
+        w.key(Modifiers::NONE, Key::Tab);
+        let Some((name, _)) = focused(&w) else { continue };
+        if wanted.remove(name.as_str()) {
+            // What was out of sight is scrolled to.
+            w.harness.run_steps(if is_ringed(&w) { 0 } else { 30 });
+            assert!(is_ringed(&w), "{name} at {:?}: {:?}", focused(&w), rings(&w));
+        }
+    }
+    assert!(wanted.is_empty(), "Tab does not reach {wanted:?}");
+    // What is pressed is seen by itself.
+    w.button("k-d tree");
+    assert!(rings(&w).is_empty());
+}
+
+#[test]
+fn f6_goes_from_panel_to_panel() {
+    let mut w = Window::lecture();
+    let view = w.viewport();
+    let mut go = |modifiers| {
+        w.key(modifiers, Key::F6);
+        focused(&w).expect("something has the focus")
+    };
+    let (first, _) = go(Modifiers::NONE);
+    assert_eq!(first, "File");
+    let (name, at) = go(Modifiers::NONE);
+    assert!(at.center().x < view.left(), "{name} is at the left");
+    let (name, at) = go(Modifiers::NONE);
+    assert!(view.x_range().contains(at.center().x) && at.center().y < view.bottom(), "{name} is in the middle");
+    let (name, at) = go(Modifiers::NONE);
+    assert!(view.x_range().contains(at.center().x) && at.center().y > view.bottom(), "{name} is below");
+    let (name, at) = go(Modifiers::NONE);
+    assert!(at.center().x > view.right(), "{name} is at the right");
+    assert_eq!(go(Modifiers::NONE).0, "File");
+    let (name, at) = go(Modifiers::SHIFT);
+    assert!(at.center().x > view.right(), "{name} is at the right");
+}
+
+#[test]
+fn rows_of_the_tree_are_one_stop_of_tab() {
+    let mut w = Window::with_model("builtin:teapot?triangles=1000");
+    w.key(Modifiers::NONE, Key::F2);
+    w.until("the tree", |s| s.tree.outline.is_some());
+    w.settle();
+    w.harness.get_by_role_and_label(Role::Tree, "Cells").focus();
+    w.step();
+    let list = focused(&w).expect("the list").1;
+    assert!(rings(&w).iter().any(|ring| ring.expand(2.0).contains_rect(list)));
+    w.key(Modifiers::NONE, Key::Tab);
+    let row = w.harness.query_by(|n| n.is_focused() && matches!(n.role(), Role::TreeItem | Role::DisclosureTriangle));
+    assert!(row.is_none(), "{:?}", row.and_then(|row| row.accesskit_node().label()));
+}
+
+#[test]
+fn what_is_dragged_is_moved_by_keys_too() {
+    let mut w = Window::lecture();
+    // A slider.
+    let depth = w.state().settings.overlay.depth;
+    w.harness.get_by_role_and_label(Role::Slider, "Depth").focus();
+    w.step();
+    w.key(Modifiers::NONE, Key::ArrowLeft);
+    assert_eq!(w.state().settings.overlay.depth, depth - 1);
+    // The edge of a panel.
+    let width = w.viewport().width();
+    let edges = w.harness.get_all_by_role_and_label(Role::Splitter, "Resize panel");
+    let left = edges.min_by(|a, b| a.rect().center().x.total_cmp(&b.rect().center().x)).expect("edges");
+    left.focus();
+    w.step();
+    w.step();
+    w.key(Modifiers::NONE, Key::ArrowRight);
+    w.step();
+    assert!(w.viewport().width() < width, "{} of {width}", w.viewport().width());
+}
+
+#[test]
+fn what_begins_and_ends_is_announced() {
+    let mut w = Window::lecture();
+    let said = |w: &Window| {
+        let node = w.harness.get_by_role(Role::Status);
+        assert_eq!(node.accesskit_node().live(), Live::Polite);
+        node.accesskit_node().label().unwrap_or_default()
+    };
+    assert!(said(&w).ends_with(" has ended"), "{}", said(&w));
+    w.open_path("builtin:no-such-scene");
+    w.until("a message", |s| s.error.is_some());
+    w.step();
+    let error = w.harness.get_by(|n| n.live() == Live::Assertive);
+    assert!(error.accesskit_node().label().or(error.accesskit_node().value()).is_some_and(|text| text.contains("no-such-scene")));
+}
+
+#[test]
+fn plots_can_be_read_as_tables() {
+    // As tall as the panels: scrolling is another thing.
+    let mut setup = Setup { size: vec2(1400.0, 1600.0), ..Setup::default() };
+    setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
+    let mut w = Window::new(setup).settled();
+    w.click(Role::CheckBox, "Show as table: leaves");
+    w.settle();
+    let stats = w.state().shown.as_ref().and_then(|shown| shown.stats.clone()).expect("counted");
+    let most = stats.leaf_sizes.iter().copied().max().expect("leaves");
+    assert!(!w.has(Role::Image, "Leaf size histogram") && w.texts().iter().any(|t| t.text == format::count(most)));
+    w.key(Modifiers::NONE, Key::F2);
+    w.until("the tree", |s| s.tree.outline.is_some());
+    w.button("Fullest leaf");
+    w.settle();
+    w.button("Parent");
+    w.settle();
+    w.click(Role::CheckBox, "Show as table: SAH cost");
+    w.settle();
+    let curves = w.state().curves.as_ref().and_then(|(_, curves)| curves.as_ref()).expect("a division");
+    let middle = format::number(curves.at(Axis::X, 0.5).cost);
+    assert!(w.says("Place") && w.texts().iter().any(|t| t.text == middle), "{middle}");
 }

@@ -89,3 +89,24 @@ fn the_open_model_is_checked_and_what_differs_is_marked() {
     w.key(Modifiers::NONE, Key::F1);
     assert!(w.has(Role::Button, "Measure"));
 }
+
+#[test]
+fn what_was_left_out_and_what_takes_memory_stand_in_the_check_workspace_too() {
+    let mut setup = Setup { size: eframe::egui::vec2(1280.0, 800.0), ..Setup::default() };
+    setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
+    let mut w = Window::new(setup).settled();
+    w.button("k-d tree");
+    w.settle();
+    w.key(Modifiers::NONE, Key::F5);
+    let needs = w.state().model.as_ref().expect("open").needs.clone();
+    w.click(Role::DisclosureTriangle, &format!("Left out ({})", needs.iter().filter(|finding| !finding.used).count()));
+    w.settle();
+    assert!(w.says(&needs.iter().find(|finding| !finding.used).expect("something").why));
+    w.click(Role::DisclosureTriangle, &format!("Left out ({})", needs.iter().filter(|finding| !finding.used).count()));
+    w.settle();
+    w.click(Role::DisclosureTriangle, "Memory");
+    w.settle();
+    let kept: Vec<&str> = w.state().kept_structures().map(|built| built.key.entry.name).collect();
+    assert_eq!(kept, ["k-d tree", "BVH"]);
+    assert!(w.says("In use") && w.says("Bytes by part"));
+}

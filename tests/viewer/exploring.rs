@@ -107,6 +107,27 @@ fn keys_walk_the_tree() {
 }
 
 #[test]
+fn what_is_walked_over_is_one_step_to_take_back() {
+    let mut w = open("builtin:teapot?triangles=1000");
+    w.button(Rank::Depth.name());
+    w.settle();
+    let before = selected(&w);
+    w.harness.get_by_role_and_label(Role::Tree, "Cells").focus();
+    w.step();
+    for _ in 0..4 {
+        w.key(Modifiers::NONE, Key::ArrowUp);
+        w.settle();
+    }
+    assert_ne!(selected(&w), before);
+    w.key(Modifiers::COMMAND, Key::Z);
+    w.settle();
+    assert_eq!(selected(&w), before);
+    w.key(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    w.settle();
+    assert_ne!(selected(&w), before);
+}
+
+#[test]
 fn a_plane_is_tried_by_hand_by_keys_and_by_rule() {
     let mut w = open("builtin:lecture");
     w.button(Rank::Overlap.name());

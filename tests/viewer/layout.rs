@@ -38,8 +38,20 @@ const ALWAYS: [&str; 12] =
     ["File", "View", "Window", "Help", "SCENE", "TIMINGS", "Measure", "BVH", "k-d", "Grid", "Brute", "Shaded"];
 
 /// What stands beside the bar because it belongs to the panel there.
-const BESIDE: [&str; 10] =
-    ["Statistics", "Findings", "Check this model", "Selected cell", "Ray", "Parent", "Child", "Sibling", "Frame", "Copy"];
+const BESIDE: [&str; 12] = [
+    "Statistics",
+    "Findings",
+    "Check this model",
+    "Selected cell",
+    "Ray",
+    "Parent",
+    "Child",
+    "Sibling",
+    "Frame",
+    "Copy",
+    "Open rays…",
+    "Close rays",
+];
 
 fn open(case: &Case, options: impl FnOnce(&mut Setup)) -> Window {
     let mut setup = Setup { size: case.size, pixels_per_point: case.pixels_per_point, ..Setup::default() };

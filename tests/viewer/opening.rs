@@ -144,8 +144,9 @@ fn there_is_one_dialog_at_a_time() {
     w.until("the file", |s| s.model.as_ref().is_some_and(|m| m.geometry.triangle_count() == 2));
 }
 
+/// A file that was dropped.
 #[derive(Debug)]
-struct Dropped(PathBuf);
+pub struct Dropped(pub PathBuf);
 
 impl DroppedFile for Dropped {
     fn path(&self) -> &Path {

@@ -32,6 +32,8 @@ fn nothing_is_lost_between_saving_and_opening() {
     w.choose("The pixel's ray", "Bounce from there");
     w.settle();
     w.button("Next leaf");
+    let step = w.state().rays.place().expect("a step");
+    assert!(step.1 > 0);
     w.key(Modifiers::NONE, Key::F2);
     w.until("the tree", |s| s.tree.outline.is_some());
     w.settle();
@@ -51,6 +53,7 @@ fn nothing_is_lost_between_saving_and_opening() {
     let before = w.state();
     let (camera, settings, ids) = (before.camera, before.settings.clone(), before.picked.as_ref().expect("selected").ids());
     let (ray, bookmarks) = (before.rays.ray, before.bookmarks.len());
+    let tried = before.tree.tried.expect("dragged");
     drop(w);
     // Another window, with other settings, opens it as the command line does.
     let mut w = window(&path.to_string_lossy(), &path);
@@ -62,12 +65,14 @@ fn nothing_is_lost_between_saving_and_opening() {
     assert_eq!((after.settings.overlay, after.settings.workspace), (settings.overlay, Workspace::Structure));
     assert_eq!((after.rays.kind, after.rays.beside.as_slice()), (RayKind::Diffuse, &["bvh"][..]));
     assert_eq!(after.bookmarks.len(), bookmarks);
+    assert!(after.tree.tried.is_some_and(|(axis, place)| axis == tried.0 && (place - tried.1).abs() < 1e-9));
+    assert!(after.overlay.as_ref().is_some_and(|overlay| overlay.tried.is_some()));
     assert!(after.model.as_ref().is_some_and(|model| model.scene.name == "builtin:teapot?triangles=1000"));
     // The ray is followed again where it is looked at.
     w.key(Modifiers::NONE, Key::F3);
     w.until("its steps", |s| s.rays.columns.len() == 2);
     w.settle();
-    assert_eq!(w.state().rays.ray, ray);
+    assert_eq!((w.state().rays.ray, w.state().rays.place()), (ray, Some(step)));
     // The view that was kept is gone to.
     w.button("BVH");
     w.settle();

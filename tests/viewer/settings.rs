@@ -11,7 +11,7 @@ use crate::window::{Setup, Window};
 
 /// What the disk is to the program.
 #[derive(Clone, Default)]
-struct Drawer(HashMap<String, String>);
+pub struct Drawer(HashMap<String, String>);
 
 impl eframe::Storage for Drawer {
     fn get_string(&self, key: &str) -> Option<String> {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Label, ProgressBar, RichText, Ui};
 
-use super::{Commands, empty, fact, heading, stability};
+use super::{Commands, empty, fact, heading, memory, needs, stability};
 use crate::lab::stability::Row;
 use crate::lab::stability::cases::Case;
 use crate::lab::{Finding, MeshCheck, ModelCheck};
@@ -29,6 +29,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
         None => {}
     }
+    ui.separator();
+    needs::show(ui, state, commands);
+    memory::show(ui, state);
 }
 
 fn cell(ui: &mut Ui, case: &Case, row: &Row) {

@@ -7,7 +7,7 @@ use eframe::egui::{
 };
 
 use super::node::hidden;
-use super::{Commands, fact, saves};
+use super::{Commands, as_table, fact, saves};
 use crate::geometry::Axis;
 use crate::lab::{Division, SahCurves};
 use crate::viewer::command::Command;
@@ -18,6 +18,8 @@ use crate::viewer::theme::{self, Palette};
 
 /// What an arrow key moves the plane, from 0 to 1; with Shift ten times as much.
 const KEY_STEP: f64 = 0.005;
+/// Places in the table, less one.
+const PLACES: u32 = 10;
 /// Decimals of a place between 0 and 1.
 const DECIMALS: usize = 3;
 
@@ -26,6 +28,9 @@ pub fn show(ui: &mut Ui, state: &State, curves: &SahCurves, commands: &mut Comma
     let (axis, tried) = tried(state, curves);
     let hidden = hidden(state);
     let response = plot(ui, curves, hidden, (axis, tried));
+    if !hidden && as_table::choice(ui, "SAH cost") {
+        costs(ui, curves);
+    }
     hands(ui, &response, axis, tried, commands);
     own_plane(ui, curves, axis, tried, commands);
     if hidden {
@@ -37,6 +42,16 @@ pub fn show(ui: &mut Ui, state: &State, curves: &SahCurves, commands: &mut Comma
     outcome(ui, curves);
     others(ui, curves, commands);
     saves::show(ui, What::Division, state, commands);
+}
+
+/// The costs of planes at a few places, in rows.
+fn costs(ui: &mut Ui, curves: &SahCurves) {
+    let places = (0..=PLACES).map(|i| f64::from(i) / f64::from(PLACES));
+    let row = |place: f64| {
+        let [x, y, z] = Axis::ALL.map(|axis| format::number(curves.at(axis, place).cost));
+        [format!("{place:.1}"), x, y, z]
+    };
+    as_table::show(ui, "SAH cost", ["Place", "x", "y", "z"], places.map(row));
 }
 
 /// The plane that is tried, or the axis that one would be tried on.

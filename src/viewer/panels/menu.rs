@@ -25,6 +25,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             if item(ui, "All commands", &PALETTE) {
                 commands.push(Command::Palette(true));
             }
+            if ui.button("Tour").on_hover_text("Six steps through what the window is for.").clicked() {
+                commands.push(Command::Tour(Some(0)));
+            }
             if ui.button("Terms").clicked() {
                 commands.push(Command::Terms(true));
             }
@@ -84,12 +87,14 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.rays.following.is_some(), Command::CancelFollow),
         (state.brute.marking, Command::MarkRectangle(false)),
         (state.brute.running.is_some(), Command::CancelBrute),
+        (state.ray_list.reading.is_some() || state.ray_list.tracing.is_some(), Command::CancelRays),
         (state.beside.building.is_some(), Command::PutBeside(None)),
         (state.checks.checking.is_some(), Command::CancelCheck),
         (state.errors.making.is_some(), Command::CancelReference),
         (state.tradeoffs.running.is_some(), Command::CancelTradeoffs),
         (state.tradeoffs.growing.is_some(), Command::CancelScaling),
         (state.exports.report.is_some(), Command::CancelReport),
+        (state.tour.is_some(), Command::Tour(None)),
         (state.presenting, Command::Present(false)),
         // In another workspace nobody sees that it runs.
         (state.checks.running.is_some() && state.settings.workspace == Workspace::Check, Command::CancelLab),

@@ -1,6 +1,8 @@
 //! The panels of the window, one per file. A panel reads [`super::state::State`] and sends
 //! [`Command`]s; it changes nothing itself.
 
+pub mod announce;
+pub mod as_table;
 pub mod axes;
 pub mod bars;
 pub mod brute;
@@ -12,9 +14,11 @@ pub mod errors;
 pub mod film;
 pub mod findings;
 pub mod heat;
+pub mod focus;
 pub mod help;
 pub mod long_list;
 pub mod marking;
+pub mod memory;
 pub mod menu;
 pub mod needs;
 pub mod node;
@@ -25,6 +29,7 @@ pub mod prediction;
 pub mod ray;
 pub mod saves;
 pub mod scaling;
+pub mod ray_list;
 pub mod scene;
 pub mod section;
 pub mod selection;
@@ -37,6 +42,7 @@ pub mod structure;
 pub mod terms;
 pub mod timings;
 pub mod toolbar;
+pub mod tour;
 pub mod tradeoffs;
 pub mod tree;
 pub mod viewport;

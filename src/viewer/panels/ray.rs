@@ -1,6 +1,6 @@
 //! The ray beside its steps: which one it is, how it is played, and which structures trace it.
 
-use eframe::egui::{Button, ComboBox, DragValue, Grid, Key, Label, RichText, Slider, TextEdit, Ui};
+use eframe::egui::{Button, ComboBox, DragValue, Grid, Key, Label, ProgressBar, RichText, Slider, TextEdit, Ui};
 
 use super::{Commands, empty, fact, heading, saves, steps};
 use crate::accel::Step;
@@ -12,7 +12,7 @@ use crate::viewer::format;
 use crate::viewer::rays::{KINDS, MOST};
 use crate::viewer::sheets::What;
 use crate::viewer::state::State;
-use crate::viewer::theme::Palette;
+use crate::viewer::theme::{self, Palette};
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -59,6 +59,7 @@ fn which(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
         None => empty(ui, "No ray yet. Click a pixel."),
     }
+    file(ui, state, commands);
     // What is typed is the field's own until it is done.
     let id = ui.scope_id().with("typed ray");
     let mut typed: String = ui.data(|d| d.get_temp(id)).unwrap_or_default();
@@ -78,6 +79,30 @@ fn which(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if let Some(note) = &rays.note {
         ui.add(Label::new(RichText::new(note).color(Palette::in_ui(ui).warn)).wrap());
     }
+}
+
+/// A file of rays: the way to one, and how far it is.
+fn file(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let list = &state.ray_list;
+    if let Some(progress) = list.progress() {
+        ui.horizontal(|ui| {
+            if ui.button("Cancel").on_hover_text("Stop, and put the file of rays away.").clicked() {
+                commands.push(Command::CancelRays);
+            }
+            let now = progress.snapshot();
+            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(30.0 * theme::GRID).text("Rays"));
+        });
+        return;
+    }
+    ui.horizontal(|ui| {
+        let help = "A text file with a ray a line, six or eight numbers, or an array of NumPy. All are traced and listed, the dearest first.";
+        if ui.add_enabled(state.model.is_some(), Button::new("Open rays…")).on_hover_text(help).clicked() {
+            commands.push(Command::OpenRays);
+        }
+        if list.file.is_some() && ui.button("Close rays").on_hover_text("Put the file of rays away.").clicked() {
+            commands.push(Command::CloseRays);
+        }
+    });
 }
 
 /// Forward and back.

@@ -1,8 +1,8 @@
 //! What the shown structure is like, in figures.
 
-use eframe::egui::{Align, CollapsingHeader, Layout, RichText, Ui};
+use eframe::egui::{Align, Layout, RichText, Ui};
 
-use super::{Commands, bars, empty, fact, findings, heading, needs, prediction, saves};
+use super::{Commands, as_table, bars, empty, fact, findings, heading, memory, needs, prediction, saves};
 use crate::accel::stats::{LEAF_SIZES, Stats};
 use crate::viewer::format;
 use crate::viewer::kept::Built;
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.separator();
     prediction::show(ui, state, built, commands);
     histograms(ui, built, stats);
-    memory(ui, stats, triangles);
+    memory::of_structure(ui, stats, triangles);
     needs::show(ui, state, commands);
 }
 
@@ -81,6 +81,16 @@ fn histograms(ui: &mut Ui, built: &Built, stats: &Stats) {
     let color = marks::color(ui, built.key.entry.family);
     let dim = Palette::in_ui(ui).dim;
     ui.add_space(theme::GRID);
+    let as_table = as_table::choice(ui, "leaves");
+    if as_table {
+        let counted = |name: String, n: u64| Some([name, format::count(n)]).filter(|_| n > 0);
+        let named = |i: usize| if i == LEAF_SIZES - 1 { format!("{i} or more") } else { i.to_string() };
+        let sizes = stats.leaf_sizes.iter().enumerate().filter_map(|(i, n)| counted(named(i), *n));
+        as_table::show(ui, "leaf sizes", ["Triangles", "Leaves"], sizes);
+        let depths = stats.leaf_depths.iter().enumerate().filter_map(|(i, n)| counted(i.to_string(), *n));
+        as_table::show(ui, "leaf depths", ["Depth", "Leaves"], depths);
+        return;
+    }
     ui.label(RichText::new("Leaf size").color(dim))
         .on_hover_text("How many leaves hold 0, 1, 2 … triangles; the last bar is all larger ones.");
     let size = |i: usize| if i == LEAF_SIZES - 1 { format!("leaves with {i} or more") } else { format!("leaves with {i}") };
@@ -90,20 +100,4 @@ fn histograms(ui: &mut Ui, built: &Built, stats: &Stats) {
             .on_hover_text("How many leaves lie at each depth, the root's depth 0 at the left.");
         bars::show(ui, "Leaf depth histogram", &stats.leaf_depths, color, |i| format!("leaves at depth {i}"));
     }
-}
-
-fn memory(ui: &mut Ui, stats: &Stats, triangles: usize) {
-    let per_triangle = stats.bytes() as f64 / triangles.max(1) as f64;
-    fact(ui, "Bytes", format::bytes(stats.bytes()), "Memory of this structure alone; the triangles themselves are shared.");
-    CollapsingHeader::new("Bytes by part").id_salt("bytes").show(ui, |ui| {
-        for part in &stats.memory {
-            fact(ui, part.name, format::bytes(part.bytes), "A part of the structure's memory.");
-        }
-        fact(
-            ui,
-            "per triangle",
-            format!("{} B", format::number(per_triangle)),
-            "The structure's bytes over the triangles it holds.",
-        );
-    });
 }

@@ -2,8 +2,9 @@
 
 use eframe::egui::{Align, Label, Layout, RichText, Ui};
 
-use super::Commands;
+use crate::task::Progress;
 use crate::viewer::command::Command;
+use super::{Commands, announce};
 use crate::viewer::format;
 use crate::viewer::state::State;
 use crate::viewer::theme::Palette;
@@ -31,8 +32,11 @@ pub fn show(ui: &mut Ui, state: &State, ui_secs: Option<f64>, commands: &mut Com
             if state.exports.report.is_some() && ui.button("Cancel the report").clicked() {
                 commands.push(Command::CancelReport);
             }
-            if let Some(doing) = doing(state) {
-                ui.label(doing);
+            let now = doing(state);
+            announce::progress(ui, state, now.as_ref().map(|now| now.0.as_str()));
+            if let Some((what, fraction)) = now {
+                let share = fraction.map(|f| format!(" {}", format::percent(f.into()))).unwrap_or_default();
+                ui.label(format!("{what}{share}"));
             } else if let Some(said) = &state.exports.said {
                 ui.add(Label::new(said.as_str()).truncate()).on_hover_text(said.as_str());
             }
@@ -40,36 +44,51 @@ pub fn show(ui: &mut Ui, state: &State, ui_secs: Option<f64>, commands: &mut Com
     });
 }
 
-/// What is going on, in a few words.
-fn doing(state: &State) -> Option<String> {
-    let share = |fraction: Option<f32>| fraction.map(|f| format!(" {}", format::percent(f.into()))).unwrap_or_default();
+/// What is going on, in a few words, and how much of it is done.
+fn doing(state: &State) -> Option<(String, Option<f32>)> {
+    let of = |what: &str, progress: &Progress| Some((what.to_owned(), progress.snapshot().fraction));
     if let Some(job) = &state.exports.report {
-        let now = job.progress.snapshot();
-        return Some(format!("Report: {}{}", now.phase, share(now.fraction)));
+        return of(&format!("Report: {}", job.progress.snapshot().phase), &job.progress);
     }
     if let Some(job) = &state.measuring {
-        let now = job.progress.snapshot();
-        return Some(format!("Measuring{}", share(now.fraction)));
+        return of("Measuring", &job.progress);
     }
     if let Some(building) = &state.building {
-        let now = building.job.progress.snapshot();
-        return Some(format!("Building {}{}", building.key.entry.name, share(now.fraction)));
+        return of(&format!("Building {}", building.key.entry.name), &building.job.progress);
     }
     if let Some(building) = &state.beside.building {
-        let now = building.job.progress.snapshot();
-        return Some(format!("Building {} beside{}", building.key.entry.name, share(now.fraction)));
+        return of(&format!("Building {} beside", building.key.entry.name), &building.job.progress);
+    }
+    if let Some(progress) = state.ray_list.progress() {
+        return of("Reading and tracing rays", progress);
     }
     if let Some((_, job)) = &state.tiles.running {
-        return Some(format!("Timing the tiles{}", share(job.progress.snapshot().fraction)));
+        return of("Timing the tiles", &job.progress);
     }
     if let Some(job) = &state.rays.following {
-        return Some(format!("Following the ray{}", share(job.progress.snapshot().fraction)));
+        return of("Following the ray", &job.progress);
+    }
+    if let Some((_, job)) = &state.loading {
+        return of("Loading", &job.progress);
     }
     if let Some((job, _)) = &state.brute.running {
-        return Some(format!("Comparing with brute force{}", share(job.progress.snapshot().fraction)));
+        return of("Comparing with brute force", &job.progress);
     }
     if state.tree.outlining.is_some() {
-        return Some("Listing the cells".to_owned());
+        return Some(("Listing the cells".to_owned(), None));
     }
-    state.loading.as_ref().map(|(_, job)| format!("Loading{}", share(job.progress.snapshot().fraction)))
+    measured(state).and_then(|(what, progress)| of(what, progress))
+}
+
+/// What is measured, found out or checked.
+fn measured(state: &State) -> Option<(&'static str, &Progress)> {
+    let jobs = [
+        state.needing.as_ref().map(|job| ("Measuring what is left out", &job.progress)),
+        state.causes.running.as_ref().map(|job| ("Looking for causes", &job.progress)),
+        state.errors.making.as_ref().map(|(_, job)| ("Making a reference", &job.progress)),
+        state.tradeoffs.running.as_ref().map(|(job, _)| ("Measuring quality", &job.progress)),
+        state.checks.checking.as_ref().map(|job| ("Checking the model", &job.progress)),
+        state.checks.running.as_ref().map(|(job, _)| ("Running the stability lab", &job.progress)),
+    ];
+    jobs.into_iter().flatten().next()
 }

@@ -2,12 +2,11 @@
 //! has come as far.
 
 use eframe::egui::{
-    self, Align2, EventFilter, Id, Key, Rect, Response, RichText, Role, Sense, Stroke, TextStyle, Ui, UiBuilder, WidgetInfo,
-    pos2, vec2,
+    Align2, EventFilter, Id, Key, Rect, Response, RichText, Role, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use super::long_list::LongList;
-use super::{Commands, empty};
+use super::{Commands, empty, focus, ray_list};
 use crate::accel::{Prune, Step};
 use crate::lab::follow::FollowedStep;
 use crate::viewer::command::Command;
@@ -24,6 +23,22 @@ const FIGURE: f32 = 15.0 * theme::GRID;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let Some(file) = &state.ray_list.file else { return columns(ui, state, commands) };
+    let (area, top) = (ui.available_rect_before_wrap(), ui.available_rect_before_wrap().left_top());
+    ui.allocate_rect(area, Sense::hover());
+    let list = Rect::from_min_size(top, vec2(theme::RAY_LIST.min(area.width() / 2.0), area.height()));
+    let rest = Rect::from_min_max(pos2(list.right() + theme::GUTTER, area.top()), area.max);
+    let mut part = |name: &str, rect: Rect| {
+        let mut part = ui.new_child(UiBuilder::new().id_salt(name).max_rect(rect));
+        part.set_clip_rect(rect.intersect(ui.clip_rect()));
+        part
+    };
+    ray_list::show(&mut part("rays", list), state, file, commands);
+    columns(&mut part("steps", rest), state, commands);
+}
+
+/// A column for each structure.
+fn columns(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let rays = &state.rays;
     if rays.columns.is_empty() {
         let text = match (&rays.note, &rays.following) {
@@ -62,21 +77,20 @@ fn one(ui: &mut Ui, state: &State, (i, column): (usize, &Column), commands: &mut
     });
     let list = Id::unique(("steps", i));
     let area = ui.available_rect_before_wrap();
-    let focus = ui.interact(area, list.with("keys"), Sense::focusable_noninteractive());
-    focus.widget_info(|| WidgetInfo::labeled(Role::List, true, format!("Steps of {}", column.built.key.entry.name)));
+    let keys_go = ui.interact(area, list.with("keys"), Sense::focusable_noninteractive());
+    keys_go.widget_info(|| WidgetInfo::labeled(Role::List, true, format!("Steps of {}", column.built.key.entry.name)));
     let rows = u32::try_from(followed.steps.len()).unwrap_or(u32::MAX);
     let reveal = Some((u32::try_from(at).unwrap_or(0), at as u64 + 1));
     LongList { id: list, rows, height: theme::ROW, reveal }.show(ui, |ui, row| {
         let step = &followed.steps[row as usize];
         if step_row(ui, step, row as usize, row as usize == at) {
             commands.push(Command::Step(i, row as usize));
-            focus.request_focus();
+            keys_go.request_focus();
         }
     });
-    if focus.has_focus() {
-        let stroke = Stroke::new(1.0, palette.accent_text);
-        ui.painter().rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
-        keys(ui, &focus, (i, column), at, commands);
+    if keys_go.has_focus() {
+        focus::ring(ui, area);
+        keys(ui, &keys_go, (i, column), at, commands);
     }
 }
 
@@ -84,7 +98,7 @@ fn one(ui: &mut Ui, state: &State, (i, column): (usize, &Column), commands: &mut
 fn step_row(ui: &mut Ui, step: &FollowedStep, number: usize, chosen: bool) -> bool {
     let palette = Palette::in_ui(ui);
     let rect = ui.max_rect();
-    let response = ui.interact(rect, ui.scope_id().with("step"), Sense::click());
+    let response = ui.interact(rect, ui.scope_id().with("step"), Sense::CLICK);
     let text = sentence(&step.step);
     response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, chosen, format!("{}: {text}", number + 1)));
     let fill = match () {

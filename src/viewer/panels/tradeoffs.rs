@@ -1,15 +1,16 @@
 //! Quality against its cost: a point for each variant, or for each test of triangles or boxes in it; those that no other beats at both are
 //! joined by a line.
 
-use eframe::egui::{Align, Align2, Button, Color32, ComboBox, Label, Layout, ProgressBar, RichText, Ui};
+use eframe::egui::{Align, Align2, Button, Color32, ComboBox, Label, Layout, ProgressBar, RichText, ScrollArea, Ui};
 use egui_plot::{Line, MarkerShape, PlotPoint, PlotPoints, PlotUi, Points, Text};
 
 use super::axes::log_log;
-use super::{Commands, empty};
+use super::{Commands, as_table, empty};
 use crate::accel::registry::{self, Family};
 use crate::geometry::tri::TestKind;
 use crate::lab::tradeoffs::front;
 use crate::viewer::command::Command;
+use crate::viewer::format;
 use crate::viewer::marks;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
@@ -124,6 +125,17 @@ const fn marker_of(family: Family) -> MarkerShape {
     }
 }
 
+/// The same points as rows.
+fn table(ui: &mut Ui, spots: &[Spot], best: &[bool], [x, y]: [&str; 2]) {
+    let row = |(spot, best): (&Spot, &bool)| {
+        let beaten = if *best { "by nobody" } else { "at both" };
+        [spot.name.clone(), format::number(spot.at.0), format::number(spot.at.1), beaten.to_owned()]
+    };
+    ScrollArea::vertical().show(ui, |ui| {
+        as_table::show(ui, "quality against its cost", ["Variant", x, y, "Beaten"], spots.iter().zip(best).map(row));
+    });
+}
+
 /// Draws the plot.
 pub fn show(ui: &mut Ui, state: &State) {
     let trade = &state.tradeoffs;
@@ -145,12 +157,19 @@ pub fn show(ui: &mut Ui, state: &State) {
     } else {
         "Filled points, joined by a line, are beaten by nobody at both; point at another for its name. Brute force, far above all others, is not drawn."
     };
-    ui.label(RichText::new(help).small().color(palette.dim));
+    let as_table = ui.horizontal(|ui| {
+        let chosen = as_table::choice(ui, "quality against its cost");
+        ui.add(Label::new(RichText::new(help).small().color(palette.dim)).wrap());
+        chosen
+    });
     let missing = trade.rows.iter().filter_map(|row| Some(format!("{}: {}", row.name, row.error.as_ref()?)));
     let missing = missing.collect::<Vec<_>>().join(" ");
     if !missing.is_empty() {
         let label = Label::new(RichText::new(format!("Not there: {missing}")).small().color(palette.warn)).truncate();
         ui.add(label).on_hover_text(missing);
+    }
+    if as_table.inner {
+        return table(ui, &spots, &best, axes);
     }
     let id = if trade.plot == Plot::Intersection { "intersection" } else { "model" };
     let height = ui.available_height() - theme::GRID;

@@ -1,12 +1,12 @@
 //! The tree of cells: each with its triangles and its part of the SAH cost, opened and closed, walked by keys.
 
 use eframe::egui::{
-    self, Align2, Button, EventFilter, Id, Key, Label, Pos2, Rect, Response, RichText, Role, Sense, Shape, Stroke, TextStyle, Ui,
+    Align2, Button, EventFilter, Id, Key, Label, Pos2, Rect, Response, RichText, Role, Sense, Shape, Stroke, TextStyle, Ui,
     WidgetInfo, pos2, vec2,
 };
 
 use super::long_list::LongList;
-use super::{Commands, empty, heading};
+use super::{Commands, empty, focus, heading};
 use crate::accel::outline::{Outline, Rank, Row};
 use crate::viewer::command::Command;
 use crate::viewer::format;
@@ -34,8 +34,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let reveal = tree.selected.and_then(height_of).map(|height| (height, tree.moved));
     let rows = LongList { id: list, rows: tree.folding.visible(), height: theme::ROW, reveal };
     let area = ui.available_rect_before_wrap();
-    let focus = ui.interact(area, list.with("keys"), Sense::focusable_noninteractive());
-    focus.widget_info(|| WidgetInfo::labeled(Role::Tree, true, "Cells"));
+    let keys_go = ui.interact(area, list.with("keys"), Sense::focusable_noninteractive());
+    keys_go.widget_info(|| WidgetInfo::labeled(Role::Tree, true, "Cells"));
     let mut least = None;
     let fit = rows.show(ui, |ui, height| {
         let at = tree.folding.row_at(height);
@@ -44,13 +44,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         let indent = row.depth.saturating_sub(base).min(LEVELS);
         let drawn = Drawn { at, row, open: tree.folding.is_open(at), selected: tree.selected == Some(at), indent };
         if drawn.show(ui, commands) {
-            focus.request_focus();
+            keys_go.request_focus();
         }
     });
-    if focus.has_focus() {
-        let stroke = Stroke::new(1.0, Palette::in_ui(ui).accent_text);
-        ui.painter().rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
-        keys(ui, &focus, state, outline, fit, commands);
+    if keys_go.has_focus() {
+        focus::ring(ui, area);
+        keys(ui, &keys_go, state, outline, fit, commands);
     }
 }
 
@@ -137,7 +136,7 @@ impl Drawn {
     fn show(&self, ui: &mut Ui, commands: &mut Commands) -> bool {
         let palette = Palette::in_ui(ui);
         let rect = ui.max_rect();
-        let response = ui.interact(rect, ui.scope_id().with("row"), Sense::click());
+        let response = ui.interact(rect, ui.scope_id().with("row"), Sense::CLICK);
         let (references, share) = (format::count(self.row.references.into()), format::share(self.row.share));
         response.widget_info(|| {
             let name = format!("{}, depth {}, {references} triangles, {share} of the SAH cost", self.name(), self.row.depth);
@@ -177,7 +176,7 @@ impl Drawn {
     fn arrow(&self, ui: &Ui, at: Pos2, commands: &mut Commands) {
         let palette = Palette::in_ui(ui);
         let target = Rect::from_center_size(at, vec2(4.0 * theme::GRID, theme::ROW));
-        let response = ui.interact(target, ui.scope_id().with("arrow"), Sense::click());
+        let response = ui.interact(target, ui.scope_id().with("arrow"), Sense::CLICK);
         response.widget_info(|| {
             WidgetInfo::labeled(
                 Role::DisclosureTriangle,
@@ -210,7 +209,7 @@ fn keys(ui: &Ui, focus: &Response, state: &State, outline: &Outline, fit: u32, c
     let seen = path.iter().rev().find_map(|at| Some((*at, folding.height_of(*at)?)));
     let Some((at, height)) = seen else { return };
     let last = folding.visible().saturating_sub(1);
-    let go = |height: u32| Command::SelectRow(folding.row_at(height.min(last)));
+    let go = |height: u32| Command::WalkToRow(folding.row_at(height.min(last)));
     let opens = !outline.row(at).is_leaf();
     let command = match () {
         () if pressed(Key::ArrowDown) => Some(go(height + 1)),
@@ -219,9 +218,9 @@ fn keys(ui: &Ui, focus: &Response, state: &State, outline: &Outline, fit: u32, c
         () if pressed(Key::PageUp) => Some(go(height.saturating_sub(fit))),
         () if pressed(Key::End) => Some(go(last)),
         () if pressed(Key::ArrowRight) && opens && !folding.is_open(at) => Some(Command::OpenRow(at, true)),
-        () if pressed(Key::ArrowRight) && opens => Some(Command::SelectRow(at + 1)),
+        () if pressed(Key::ArrowRight) && opens => Some(Command::WalkToRow(at + 1)),
         () if pressed(Key::ArrowLeft) && opens && folding.is_open(at) => Some(Command::OpenRow(at, false)),
-        () if pressed(Key::ArrowLeft) => outline.parent(at).map(Command::SelectRow),
+        () if pressed(Key::ArrowLeft) => outline.parent(at).map(Command::WalkToRow),
         () => None,
     };
     commands.extend(command);

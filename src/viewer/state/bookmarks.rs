@@ -43,6 +43,6 @@ impl State {
         self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
         self.look(camera, Kind::Single);
         self.restore(Some(choices));
-        self.await_cell(&selected);
+        self.await_cell(&selected, None);
     }
 }

@@ -73,6 +73,6 @@ impl State {
     /// Shows the cell of a finding.
     pub(super) fn show_cause(&mut self, row: u32) {
         self.settings.workspace = Workspace::Structure;
-        self.select_row(row);
+        self.select_row(row, false);
     }
 }

@@ -59,8 +59,8 @@ impl State {
         awaited || self.tree.outlining.is_some() || self.tree.selecting.is_some() || self.curving.is_some()
     }
 
-    /// Selects a cell by its row.
-    pub(super) fn select_row(&mut self, row: u32) {
+    /// Selects a cell by its row; all that is walked over by keys is one step to take back.
+    pub(super) fn select_row(&mut self, row: u32, walking: bool) {
         let (Some(outline), Some(shown)) = (&self.tree.outline, &self.shown) else { return };
         if row >= outline.len() {
             return;
@@ -68,7 +68,8 @@ impl State {
         let job = workers::select(&self.shared, Arc::clone(&shown.accel), Arc::clone(outline), row);
         self.tree.selecting = job.ok();
         // A selection of a bookmark that was on its way is overtaken.
-        self.tree.restoring = false;
+        (self.tree.restoring, self.tree.retried) = (false, None);
+        self.tree.walking = walking;
         self.picking = None;
         self.tree.select(Some(row));
     }
@@ -78,15 +79,20 @@ impl State {
         let Some(job) = &self.tree.selecting else { return };
         match job.poll() {
             Outcome::Running => return,
-            Outcome::Done(picked) => {
+            Outcome::Done(Ok(picked)) => {
                 self.tree.selecting = None;
                 // What belongs to a bookmark or a file is no step of its own.
                 if !std::mem::take(&mut self.tree.restoring) && self.picked.as_ref() != Some(&picked) {
-                    self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
+                    let kind = if self.tree.walking { Kind::Walk } else { Kind::Single };
+                    self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), kind, Instant::now());
                 }
+                let retried = self.tree.retried.take();
                 self.select(Some(picked));
+                if retried.is_some() {
+                    self.try_plane(retried);
+                }
             }
-            Outcome::Died => self.follow_selection(),
+            Outcome::Done(Err(_)) | Outcome::Died => self.follow_selection(),
         }
         self.tree.selecting = None;
     }

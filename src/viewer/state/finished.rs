@@ -83,6 +83,7 @@ impl State {
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
         self.shared.give_back(before.columns);
         self.brute = Brute::default();
+        self.close_rays();
         self.awaited = None;
         self.forget_beside();
         self.bring_back();

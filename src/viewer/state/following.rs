@@ -16,6 +16,12 @@ use crate::viewer::settings::Workspace;
 use crate::viewer::workers::{self, ToFollow};
 
 impl State {
+    /// Follows another ray, from its first step.
+    pub(super) fn follow_anew(&mut self, ray: Ray) {
+        (self.rays.awaited, self.ray_list.chosen) = (None, None);
+        self.follow(ray);
+    }
+
     /// Follows a ray through the shown structure and those beside it.
     pub(super) fn follow(&mut self, ray: Ray) {
         self.rays.asked = Some(ray);
@@ -53,7 +59,7 @@ impl State {
         match from_text(text) {
             Ok(ray) => {
                 self.rays.kind = RayKind::Primary;
-                self.follow(ray);
+                self.follow_anew(ray);
             }
             Err(why) => self.rays.note = Some(super::finished::sentence(&format!("Not followed: {why}"))),
         }
@@ -80,6 +86,7 @@ impl State {
                 found.columns.iter().for_each(|(built, _)| self.kept.keep(built.clone()));
                 self.rays.columns = found.columns.into_iter().map(|(built, followed)| Column { built, followed }).collect();
                 self.rays.go(lead, at);
+                self.rays.go_to_awaited();
                 let failed = found.failed.iter().map(|(id, why)| super::finished::sentence(&format!("{id}: {why}")));
                 let failed = failed.collect::<Vec<_>>().join(" ");
                 self.rays.note = match found.ray {

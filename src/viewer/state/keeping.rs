@@ -3,6 +3,7 @@
 
 use super::State;
 use crate::job::Outcome;
+use crate::viewer::kept::Built;
 use crate::viewer::model::Instances;
 use crate::viewer::state::finished::sentence;
 use crate::viewer::workers;
@@ -49,6 +50,11 @@ impl State {
     /// Bytes that are charged, and the most there may be.
     pub fn memory(&self) -> (u64, u64) {
         (self.shared.budget.used(), self.shared.budget.limit())
+    }
+
+    /// Structures that are kept, the last used first.
+    pub fn kept_structures(&self) -> impl Iterator<Item = &Built> {
+        self.kept.iter()
     }
 
     pub(super) fn measure_needs(&mut self) {

@@ -16,17 +16,19 @@ mod following;
 mod heating;
 mod growing;
 mod keeping;
+mod listing;
 mod refresh;
 mod saving;
 mod sectioning;
 mod tiling;
+mod touring;
 mod trading;
 mod visiting;
 
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
 pub use heating::LEAST_SPAN;
-use saving::Saving;
+use saving::{Awaited, Saving};
 use visiting::Visiting;
 
 use std::path::PathBuf;
@@ -50,10 +52,12 @@ use super::model::{Instances, Model};
 use super::navigation;
 use super::overlay::{Collected, Wanted};
 use super::pick::Picked;
+use super::ray_list::RayList;
 use super::rays::Rays;
 use super::settings::{Settings, Workspace};
 use super::tiles::Tiles;
 use super::timings::{Terms, Timings};
+use super::tour::Tour;
 use super::tradeoffs::Tradeoffs;
 use super::tree::Tree;
 use super::workers::{
@@ -131,6 +135,8 @@ pub struct State {
     pub rays: Rays,
     /// The picture compared with brute force.
     pub brute: Brute,
+    /// A file of rays, there.
+    pub ray_list: RayList,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -151,12 +157,14 @@ pub struct State {
     pub help: bool,
     /// The page of terms is open.
     pub terms: bool,
+    /// How far somebody is on the tour, if anybody is.
+    pub tour: Option<Tour>,
     /// Everything is larger and the panels are away, for an audience.
     pub presenting: bool,
     /// The workspace file that is saved or opened.
     saving: Saving,
-    /// A cell to select once its structure is there, by the cells from the root to it.
-    awaited: Option<(Key, Vec<CellId>)>,
+    /// A cell to select once its structure is there.
+    awaited: Option<Awaited>,
     /// Views of the open model that were kept.
     pub bookmarks: Vec<Bookmark>,
     /// The first and the last depth that were chosen, whether or not the shown structure is as deep.
@@ -293,6 +301,7 @@ impl State {
             trace_pool: pool.clone(),
             rays: Rays::default(),
             brute: Brute::default(),
+            ray_list: RayList::default(),
             picked: None,
             error: None,
             answer: None,
@@ -303,6 +312,7 @@ impl State {
             palette: false,
             help: false,
             terms: false,
+            tour: None,
             presenting: false,
             saving: Saving::default(),
             awaited: None,
@@ -363,9 +373,9 @@ impl State {
             || self.tradeoffs.growing.is_some()
     }
 
-    /// Whether the lab runs or the model is checked, which would disturb a measurement.
+    /// Whether the lab runs, the model is checked or a file of rays is traced, which would disturb a measurement.
     pub fn is_checking(&self) -> bool {
-        self.checks.running.is_some() || self.checks.checking.is_some()
+        self.checks.running.is_some() || self.checks.checking.is_some() || self.ray_list.tracing.is_some()
     }
 
     /// Width over height of the viewport.
@@ -394,9 +404,11 @@ impl State {
             || self.brute.running.is_some()
             || self.is_tiling()
             || self.awaits_visits()
+            || self.ray_list.is_busy()
             || self.saving.is_busy()
             || self.exports.is_writing()
             || self.awaited.is_some()
+            || self.is_touring()
             || drawing
     }
 
@@ -459,7 +471,8 @@ impl State {
                 let picked = self.picked.clone().map(|p| Picked { level: level.min(p.path.len().saturating_sub(1)), ..p });
                 self.select(picked);
             }
-            Command::SelectRow(row) => self.select_row(row),
+            Command::SelectRow(row) => self.select_row(row, false),
+            Command::WalkToRow(row) => self.select_row(row, true),
             Command::OpenRow(row, open) => self.open_row(row, open),
             Command::OpenBelow(row) => self.open_below(row),
             Command::CloseTree => self.tree.close_all(),
@@ -477,6 +490,10 @@ impl State {
                 self.follow_again();
             }
             Command::RayText(text) => self.follow_text(&text),
+            Command::OpenRays => self.ask_for_rays(),
+            Command::FollowListed(row) => self.follow_listed(row),
+            Command::CancelRays => self.cancel_rays(),
+            Command::CloseRays => self.close_rays(),
             Command::CancelFollow => self.rays.following = None,
             Command::MarkRectangle(mark) => self.mark_rectangle(mark),
             Command::CheckByBrute(rect) => self.compare_with_brute_force(rect),
@@ -532,6 +549,7 @@ impl State {
             Command::Palette(open) => self.palette = open,
             Command::Help(open) => self.help = open,
             Command::Terms(open) => self.terms = open,
+            Command::Tour(step) => self.go_on_tour(step),
             Command::Present(present) => self.presenting = present,
             Command::PutBeside(id) => self.put_beside(id),
             Command::Divider(at) => self.beside.divider = at.clamp(0.0, 1.0),
@@ -545,7 +563,7 @@ impl State {
                     self.bookmarks.remove(at);
                 }
             }
-            Command::ResetLayout | Command::FullScreen | Command::Quit => {}
+            Command::ResetLayout | Command::NextPanel(_) | Command::FullScreen | Command::Quit => {}
         }
     }
 
@@ -554,7 +572,7 @@ impl State {
         (self.tree.selecting, self.tree.restoring) = (None, false);
         self.note_click(at);
         if self.settings.workspace == Workspace::Ray {
-            self.follow(ray);
+            self.follow_anew(ray);
         }
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), Arc::clone(&shown.accel), ray).ok();
@@ -603,6 +621,9 @@ impl State {
     fn open(&mut self, model: String) {
         if WorkspaceFile::is_one(&model) {
             return self.open_workspace(model);
+        }
+        if RayList::is_one(&model) {
+            return self.open_rays(model.into());
         }
         self.saving.forget();
         self.asking = None;
@@ -732,6 +753,7 @@ impl State {
         self.advance_filming();
         self.advance_following();
         self.advance_brute_force();
+        self.advance_ray_list();
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();
@@ -749,6 +771,7 @@ impl State {
         self.advance_prediction();
         self.advance_textures();
         self.advance_visits();
+        self.advance_tour();
         self.refresh_overlay();
     }
 

@@ -6,9 +6,11 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 
 use super::State;
 use crate::accel::{CellId, registry};
+use crate::geometry::Axis;
 use crate::job::{Job, Outcome};
 use crate::lab::follow::{from_text, to_text};
 use crate::viewer::files;
+use crate::viewer::kept::Key;
 use crate::viewer::model::Instances;
 use crate::viewer::pick::Picked;
 use crate::viewer::rays::MOST;
@@ -24,6 +26,16 @@ pub struct Saving {
     reading: Option<Job<Result<WorkspaceFile, String>>>,
     /// What was read, until its model is open; and what became of instances before.
     read: Option<(WorkspaceFile, Instances)>,
+}
+
+/// A cell that is to be selected.
+pub struct Awaited {
+    /// The structure that it is of.
+    key: Key,
+    /// The cells from the root to it.
+    path: Vec<CellId>,
+    /// A plane to try in it.
+    tried: Option<(Axis, f64)>,
 }
 
 impl Saving {
@@ -56,6 +68,8 @@ impl State {
         file.selected = selected.map(ids).unwrap_or_default();
         file.ray = self.rays.asked.as_ref().map(to_text);
         file.ray_kind = self.rays.kind.id().to_owned();
+        file.step = self.rays.place();
+        file.tried = self.tree.tried.filter(|_| !file.selected.is_empty()).map(|(axis, place)| (axis.index(), place));
         file.beside = self.rays.beside.iter().map(|id| (*id).to_owned()).collect();
         file.bookmarks.clone_from(&self.bookmarks);
         (file.split, file.divider) = (self.beside.chosen.map(|entry| entry.id.to_owned()), self.beside.divider);
@@ -124,13 +138,15 @@ impl State {
         self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
         (self.camera, self.framed) = (file.camera, None);
         self.bookmarks = file.bookmarks;
-        self.await_cell(&file.selected);
+        let tried = file.tried.and_then(|(axis, place)| Some((*Axis::ALL.get(axis)?, place)));
+        self.await_cell(&file.selected, tried.filter(|(_, place)| place.is_finite()));
         self.rays.beside = file.beside.iter().filter_map(|id| registry::find(id)).map(|entry| entry.id).take(MOST - 1).collect();
         self.rays.beside.dedup();
         self.beside.chosen = file.split.and_then(|id| registry::find(&id));
         self.beside.divider = file.divider.clamp(0.0, 1.0);
         self.rays.kind = file.ray_kind.parse().unwrap_or(self.rays.kind);
         self.rays.asked = file.ray.and_then(|text| from_text(&text).ok());
+        self.rays.awaited = file.step.filter(|_| self.rays.asked.is_some());
     }
 
     /// Selects what was saved, once its structure is there.
@@ -139,16 +155,16 @@ impl State {
             return;
         }
         // Where the build came to nothing, or another structure was chosen, nobody waits any more.
-        let Some((key, path)) = self.awaited.take() else { return };
+        let Some(Awaited { key, path, tried }) = self.awaited.take() else { return };
         if let Some(shown) = self.shown.as_ref().filter(|shown| shown.key == key && !path.is_empty()) {
-            self.tree.restoring = true;
+            (self.tree.restoring, self.tree.retried) = (true, tried);
             self.tree.selecting = workers::select_path(&self.shared, Arc::clone(&shown.accel), path).ok();
         }
     }
 
-    /// Selects a cell of the chosen structure, by the cells from the root to it, once that is there.
-    pub(super) fn await_cell(&mut self, path: &[(u32, u32)]) {
+    /// Selects a cell of the chosen structure, by the cells from the root to it, once that is there, and tries a plane in it.
+    pub(super) fn await_cell(&mut self, path: &[(u32, u32)], tried: Option<(Axis, f64)>) {
         let path = path.iter().map(|(instance, node)| CellId { instance: *instance, node: *node }).collect();
-        self.awaited = Some((self.wanted_key(), path));
+        self.awaited = Some(Awaited { key: self.wanted_key(), path, tried });
     }
 }

@@ -1,0 +1,123 @@
+//! A file of rays in the Ray workspace: read and traced in the background, and followed one by one.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError};
+
+use super::State;
+use super::finished::sentence;
+use crate::job::Outcome;
+use crate::lab::RayKind;
+use crate::viewer::command::Command;
+use crate::viewer::ray_list::{self, RayList};
+use crate::viewer::settings::Workspace;
+
+impl State {
+    /// Asks for a file of rays.
+    pub(super) fn ask_for_rays(&mut self) {
+        if self.ray_list.asked.is_none() {
+            self.ray_list.asked = Some(self.dialog.pick_rays(Arc::clone(&self.shared.wake)));
+        }
+    }
+
+    /// Reads a file of rays, and shows them in the Ray workspace.
+    pub(super) fn open_rays(&mut self, path: PathBuf) {
+        (self.asking, self.error) = (None, None);
+        match ray_list::read(&self.shared, path) {
+            Ok(job) => self.ray_list.reading = Some(job),
+            Err(e) => self.fail(format!("Can't open the rays: {e}.")),
+        }
+    }
+
+    /// Reads a file of rays once a model is open.
+    pub fn await_rays(&mut self, path: PathBuf) {
+        self.ray_list.awaited = Some(path);
+    }
+
+    /// Forgets the rays; one that waits for its model stays.
+    pub(super) fn close_rays(&mut self) {
+        let awaited = self.ray_list.awaited.take();
+        let before = std::mem::replace(&mut self.ray_list, RayList { awaited, ..RayList::default() });
+        self.shared.give_back((before.file, before.traced)); // they may be large
+    }
+
+    /// Stops reading or tracing them; what was not traced is not listed.
+    pub(super) fn cancel_rays(&mut self) {
+        self.ray_list.reading = None;
+        if self.ray_list.tracing.is_some() {
+            self.close_rays();
+        }
+    }
+
+    /// Follows the ray of a row.
+    pub(super) fn follow_listed(&mut self, row: u32) {
+        let Some((_, ray, _)) = self.ray_list.row(row) else { return };
+        (self.ray_list.chosen, self.ray_list.moved) = (Some(row), self.ray_list.moved + 1);
+        self.rays.kind = RayKind::Primary;
+        self.follow_anew(ray);
+    }
+
+    pub(super) fn advance_ray_list(&mut self) {
+        match self.ray_list.asked.as_ref().map(Receiver::try_recv) {
+            Some(Ok(path)) => {
+                self.ray_list.asked = None;
+                if let Some(path) = path {
+                    self.open_rays(path);
+                }
+            }
+            Some(Err(TryRecvError::Disconnected)) => self.ray_list.asked = None,
+            Some(Err(TryRecvError::Empty)) | None => {}
+        }
+        if self.loading.is_none()
+            && let Some(path) = self.ray_list.awaited.take()
+            && self.model.is_some()
+        {
+            self.open_rays(path);
+        }
+        self.advance_reading();
+        self.advance_tracing();
+    }
+
+    fn advance_reading(&mut self) {
+        let Some(job) = &self.ray_list.reading else { return };
+        match job.poll() {
+            Outcome::Running => return,
+            Outcome::Done(Ok(file)) => {
+                self.close_rays();
+                self.ray_list.file = Some(file);
+                self.carry_out(Command::Workspace(Workspace::Ray));
+            }
+            Outcome::Done(Err(why)) => self.fail(sentence(&why)),
+            Outcome::Died => self.fail("Can't open the rays: reading them failed. Please report this file.".to_owned()),
+        }
+        self.ray_list.reading = None;
+    }
+
+    /// Traces them through the shown structure where somebody looks at them.
+    fn advance_tracing(&mut self) {
+        let shown = self.shown.as_ref().map(|shown| &shown.key);
+        if let Some((key, job)) = self.ray_list.tracing.take_if(|(key, _)| Some(&*key) == shown) {
+            match job.poll() {
+                Outcome::Running => self.ray_list.tracing = Some((key, job)),
+                Outcome::Done(Ok(traced)) => {
+                    self.shared.give_back(self.ray_list.traced.replace(traced));
+                    self.ray_list.chosen = None;
+                }
+                Outcome::Done(Err(_)) => {}
+                Outcome::Died => {
+                    self.close_rays();
+                    self.fail("Can't trace the rays: tracing failed. Please report this file.".to_owned());
+                }
+            }
+            return;
+        }
+        self.ray_list.tracing = None; // of another structure
+        let (Some(shown), Some(file)) = (&self.shown, &self.ray_list.file) else { return };
+        let known = self.ray_list.traced.as_ref().is_some_and(|traced| traced.of == shown.key);
+        let looked_at = self.settings.workspace == Workspace::Ray && self.building.is_none();
+        if !known && looked_at && !self.is_measuring() {
+            let job = ray_list::trace(&self.shared, shown, Arc::clone(&file.rays));
+            self.ray_list.tracing = job.ok().map(|job| (shown.key.clone(), job));
+        }
+    }
+}
