@@ -318,6 +318,7 @@ mod tests {
             depth: Arc::new(depth),
             range: Range { min: 0.0, max: 1.0 },
             progress: crate::render::Progress::default(),
+            amounts: None,
             shots: Vec::new(),
         };
         let cell = Aabb { min: Vec3::splat(-0.2), max: Vec3::splat(0.2) };

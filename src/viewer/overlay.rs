@@ -151,7 +151,7 @@ pub fn collect(
     stopped?;
     let mut collected = collector.finish(accel);
     if let Some((film, at)) = film {
-        light(accel, film, at, wanted, &mut collected);
+        light(accel, film, at, (wanted, cancel), &mut collected)?;
     }
     Ok(collected)
 }
@@ -160,10 +160,16 @@ pub fn collect(
 const MOST_LIT: usize = 32;
 
 /// The cell that was just divided or merged, and its parts; and the plane between them.
-fn light(accel: &dyn Accel, film: &Film, at: u32, wanted: &Wanted, collected: &mut Collected) {
-    let Some(row) = film.just(at) else { return };
-    let cells = film.outline().cells(accel, row);
-    let Some(cell) = cells.last() else { return };
+fn light(
+    accel: &dyn Accel,
+    film: &Film,
+    at: u32,
+    (wanted, cancel): (&Wanted, &Cancel),
+    collected: &mut Collected,
+) -> Result<(), Cancelled> {
+    let Some(row) = film.just(at) else { return Ok(()) };
+    let cells = film.outline().cells(accel, row, cancel)?;
+    let Some(cell) = cells.last() else { return Ok(()) };
     let white = |cell: &Cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4]);
     let overlay = &mut collected.overlay;
     accel.children(cell, &mut |part| {
@@ -178,6 +184,7 @@ fn light(accel: &dyn Accel, film: &Film, at: u32, wanted: &Wanted, collected: &m
         let plane = plane_in(cell.shape.bounds(), axis, pos);
         overlay.planes.push(placed(accel, cell.id.instance, &plane, theme::TRIED.to_array()));
     }
+    Ok(())
 }
 
 impl Collector<'_> {

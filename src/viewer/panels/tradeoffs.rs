@@ -169,7 +169,7 @@ pub fn show(ui: &mut Ui, state: &State) {
         ui.add(label).on_hover_text(missing);
     }
     if as_table.inner {
-        return table(ui, &spots, &best, axes);
+        return table(ui, &spots, &best, axes(state, trade.plot));
     }
     let id = if trade.plot == Plot::Intersection { "intersection" } else { "model" };
     let height = ui.available_height() - theme::GRID;

@@ -11,7 +11,7 @@ use crate::viewer::command::Command;
 use crate::viewer::gpu::{self, Base, DrawList, Raster, View};
 use crate::viewer::navigation;
 use crate::viewer::rays_over;
-use crate::viewer::settings::Navigation;
+use crate::viewer::settings::{Navigation, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
