@@ -79,7 +79,7 @@ pub struct Progress {
     pub share: f64,
     /// Rays traced a second in this pass, by all threads.
     pub rays_per_sec: f64,
-    /// What camera rays do in this view: summed over [`Self::counted`] of them.
+    /// What camera rays do in this view: summed over [`Self::counted`] of them, but for the stack, which is the deepest.
     pub counts: Counts,
     /// Rays that were counted.
     pub counted: u64,

@@ -319,6 +319,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn colours_of_boxes_are_known_by_name() {
+        let known = ["depth", "triangles", "share", "overlap", "visits"].map(BoxColor::of_id);
+        assert_eq!(known, BoxColor::ALL.map(Some));
+        assert_eq!(BoxColor::of_id("other"), None);
+    }
+
+    #[test]
     fn parameters_are_remembered_by_structure() {
         let mut settings = Settings::default();
         let entry = settings.entry();

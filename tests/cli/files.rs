@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::support::{Folder, Hits, good, hits, json};
+use crate::support::{Folder, Hits, bad, good, hits, json};
 use boxwood::accel::{BuildCx, Mode, registry};
 use boxwood::geometry::Ray;
 use boxwood::geometry::tri::TestKind;
@@ -112,6 +112,18 @@ fn a_picture_has_its_size_and_shows_something() {
         assert!(opaque > 100 && opaque < 64 * 48, "{opaque} pixels show something");
     }
     assert_eq!(folder.names(), ["Würfel.ply", "picture.png"]);
+}
+
+#[test]
+fn a_heat_map_says_of_which_rays_it_is() {
+    let folder = Folder::new();
+    let (model, out) = (folder.model(), folder.at("picture.png"));
+    let render =
+        |mode, rays| ["render", &model, "-o", &out, "--mode", mode, "--size", "16x12", "--spp", "1", "--heat-rays", rays];
+    assert!(good(&render("prims", "shadow")).contains("triangles tested by a shadow ray"));
+    assert!(good(&render("stack", "bounce")).contains("entries on the stack at once, a bounce"));
+    let said = bad(&render("nodes", "diffuse"), 2);
+    assert!(said.contains("primary, shadow or bounce"), "{said}");
 }
 
 #[cfg(unix)]

@@ -47,6 +47,7 @@ fn a_heat_map_is_of_the_rays_that_are_chosen() {
 fn the_ends_of_the_colours_are_dragged_moved_by_keys_typed_and_fitted() {
     let mut w = open("bvh", Mode::Nodes, false);
     assert!(w.has(Role::Image, "Histogram of the heat map"));
+    assert!(w.harness.unnamed_widgets().is_empty());
     let fitted = w.state().picture.as_ref().expect("traced").range;
     assert!(w.state().range.is_none());
     let camera = w.state().camera;

@@ -1,7 +1,9 @@
 //! What a heat map shows: how its amounts are spread, the range of its colours, and the times of tiles.
 
-use eframe::egui::{Button, CursorIcon, DragValue, EventFilter, Key, ProgressBar, Rect, Role, Sense, Shape, Stroke, Ui};
-use eframe::egui::{Id, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Button, CursorIcon, DragValue, EventFilter, Id, Key, ProgressBar, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 use super::{Commands, empty, fact, heading};
 use crate::lab::tile_times::{REPEATS, TILE};

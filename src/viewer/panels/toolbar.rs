@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         if heat::is_shown(state) {
             heat_rays(ui, state, commands);
         }
-        if state.settings.mode == Mode::Path {
+        if state.settings.mode == Mode::Path && !state.tiles.shown {
             light(ui, state, commands);
         }
         depth(ui, state, commands);

@@ -28,7 +28,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         return;
     };
     summary(ui, outline, commands);
-    header(ui);
+    let visits = state.visits();
+    header(ui, visits.is_some());
     let list = Id::unique("tree of cells");
     let height_of = |row: u32| tree.folding.height_of(row);
     let reveal = tree.selected.and_then(height_of).map(|height| (height, tree.moved));
@@ -42,7 +43,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         let row = outline.row(at);
         let base = *least.get_or_insert(row.depth.saturating_sub(1));
         let indent = row.depth.saturating_sub(base).min(LEVELS);
-        let drawn = Drawn { at, row, open: tree.folding.is_open(at), selected: tree.selected == Some(at), indent };
+        let (open, selected, visits) = (tree.folding.is_open(at), tree.selected == Some(at), visits.map(|v| v.a_ray(row.id)));
+        let drawn = Drawn { at, row, open, selected, indent, visits };
         if drawn.show(ui, commands) {
             keys_go.request_focus();
         }
@@ -88,17 +90,18 @@ fn summary(ui: &mut Ui, outline: &Outline, commands: &mut Commands) {
     });
 }
 
-/// What the columns hold.
-fn header(ui: &mut Ui) {
+/// What the columns hold: visits in place of triangles where boxes are coloured by them.
+fn header(ui: &mut Ui, visits: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW), Sense::hover());
     let color = Palette::in_ui(ui).dim;
     let small = TextStyle::Small.resolve(ui.style());
     let inner = Rect::from_min_max(rect.min, pos2(rect.right() - 3.0 * theme::GRID, rect.bottom()));
     let put = |at: Pos2, align: Align2, text: &str| ui.painter().text(at, align, text, small.clone(), color);
     put(inner.left_center(), Align2::LEFT_CENTER, "Cell");
-    put(inner.right_center() - vec2(COLUMN, 0.0), Align2::RIGHT_CENTER, "Triangles");
+    let middle = if visits { "Visits a ray" } else { "Triangles" };
+    put(inner.right_center() - vec2(COLUMN, 0.0), Align2::RIGHT_CENTER, middle);
     put(inner.right_center(), Align2::RIGHT_CENTER, "SAH share");
-    response.on_hover_text("Triangles: references in the cell and below. SAH share: the part of the structure's cost that it and what is below it make up; the bar behind a row is as long.");
+    response.on_hover_text("Triangles: references in the cell and below. Visits a ray: how often a camera ray of the view enters it. SAH share: the part of the structure's cost that it and what is below it make up; the bar behind a row is as long.");
 }
 
 /// A row as it is drawn.
@@ -108,6 +111,8 @@ struct Drawn {
     open: bool,
     selected: bool,
     indent: u32,
+    /// Visits a ray, if they stand in place of triangles.
+    visits: Option<f64>,
 }
 
 impl Drawn {
@@ -139,7 +144,9 @@ impl Drawn {
         let response = ui.interact(rect, ui.scope_id().with("row"), Sense::CLICK);
         let (references, share) = (format::count(self.row.references.into()), format::share(self.row.share));
         response.widget_info(|| {
-            let name = format!("{}, depth {}, {references} triangles, {share} of the SAH cost", self.name(), self.row.depth);
+            let visits = self.visits.map(|visits| format!(", {} visits a ray", format::number(visits))).unwrap_or_default();
+            let (name, depth) = (self.name(), self.row.depth);
+            let name = format!("{name}, depth {depth}, {references} triangles{visits}, {share} of the SAH cost");
             WidgetInfo::selected(Role::TreeItem, true, self.selected, name)
         });
         let fill = match () {
@@ -161,7 +168,8 @@ impl Drawn {
         let numbers = rect.right_center() - vec2(COLUMN, 0.0);
         let room = Rect::from_min_max(rect.min, pos2(numbers.x - COLUMN, rect.bottom()));
         ui.painter_at(room).text(name, Align2::LEFT_CENTER, self.brief(), body.clone(), palette.text);
-        ui.painter().text(numbers, Align2::RIGHT_CENTER, references, body.clone(), palette.dim);
+        let middle = self.visits.map_or(references, format::number);
+        ui.painter().text(numbers, Align2::RIGHT_CENTER, middle, body.clone(), palette.dim);
         ui.painter().text(rect.right_center(), Align2::RIGHT_CENTER, share, body, palette.text);
         if response.clicked() {
             commands.push(Command::SelectRow(self.at));
