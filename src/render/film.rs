@@ -145,6 +145,11 @@ impl Film {
         self.sums.iter().flat_map(|sum| &sum[..3]).map(|x| f64::from(*x)).sum()
     }
 
+    /// The amount of each pixel, in scalar modes; no number where nothing is seen.
+    pub fn amounts(&self) -> Vec<f32> {
+        self.means().map(|[amount, _, _, seen]| if seen > 0.0 { amount / seen } else { f32::NAN }).collect()
+    }
+
     /// Linear red, green and blue of each pixel over black.
     pub fn linear(&self) -> Vec<[f32; 3]> {
         self.means().map(|[r, g, b, _]| [r, g, b]).collect()

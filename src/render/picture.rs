@@ -26,6 +26,10 @@ pub struct Picture {
     pub depth: Arc<Vec<f32>>,
     /// The range that amounts were mapped with.
     pub range: Range,
+    /// The range that would suit them.
+    pub suits: Range,
+    /// The amounts themselves, row by row, no number where nothing is seen; if they were asked for, and in a full pass.
+    pub amounts: Option<Vec<f32>>,
     /// How far the picture is.
     pub progress: Progress,
     /// What was kept on the way, if that was asked for.

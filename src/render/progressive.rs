@@ -39,6 +39,8 @@ pub struct Request {
     pub max_samples: u32,
     /// For amounts; `None` takes one that suits the first full pass.
     pub range: Option<Range>,
+    /// Whether the amounts themselves come with the picture.
+    pub amounts: bool,
     /// For light.
     pub tone: Tone,
     /// Where to charge the light of 1, 2, 4, … samples that is kept beside the picture ([`Shot`]); `None` to keep none.
@@ -197,7 +199,8 @@ struct Task {
     request: Request,
     number: u64,
     start: Instant,
-    range: Option<Range>,
+    /// The range that suits the first full pass.
+    suits: Option<Range>,
     counts: Counts,
     counted: u64,
     /// Seconds to find a camera ray's hit, as foreseen.
@@ -327,14 +330,15 @@ impl<N: Fn()> Worker<N> {
         if mode == Mode::Path && film.samples().is_power_of_two() {
             task.exposure = film.fitting_exposure();
         }
-        let range = if mode.is_scalar() {
-            *task.range.get_or_insert_with(|| auto_range(film, mode))
-        } else {
-            Range { min: 0.0, max: 1.0 }
+        let suits = match mode.is_scalar() {
+            true => task.suits.unwrap_or_else(|| auto_range(film, mode)),
+            false => Range { min: 0.0, max: 1.0 },
         };
-        if step > 1 && task.request.range.is_none() {
-            task.range = None; // a coarse pass does not settle the range
+        if step == 1 {
+            task.suits = Some(suits); // a coarse pass does not settle it
         }
+        let range = task.request.range.filter(|_| mode.is_scalar()).unwrap_or(suits);
+        let amounts = (step == 1 && task.request.amounts && mode.is_scalar()).then(|| film.amounts());
         let done = step == 1 && film.is_done(task.request.max_samples);
         let progress = Progress {
             samples: film.samples(),
@@ -358,6 +362,8 @@ impl<N: Fn()> Worker<N> {
             rgba,
             depth: Arc::clone(film.depth()),
             range,
+            suits,
+            amounts,
             progress,
             shots: task.shots.clone(),
         };
@@ -407,7 +413,7 @@ impl Task {
         Self {
             number,
             start: Instant::now(),
-            range: request.range,
+            suits: None,
             counts: Counts::default(),
             counted: 0,
             ray_secs: 0.0,
@@ -424,7 +430,7 @@ impl Task {
     /// A new request after this one, which goes on with its samples where it can.
     fn after(self, request: Request, number: u64) -> Self {
         if self.film.as_ref().is_some_and(|film| film.samples() > 0) && request.has_samples_of(&self.request) {
-            Self { number, range: request.range, redevelop: true, request, ..self }
+            Self { number, redevelop: true, request, ..self }
         } else {
             Self::new(request, number)
         }

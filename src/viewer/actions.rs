@@ -6,6 +6,7 @@ use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
 use super::panels::toolbar;
+use super::panes::{Arrange, LETTERS, MOST, PaneChoice, Shows};
 use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, ThemeChoice, Workspace};
 use super::state::State;
 use super::tradeoffs::Plot;
@@ -234,7 +235,7 @@ fn structure(list: &mut List, state: &State) {
         let other = entry.id != state.settings.entry().id;
         list.add(format!("Split with {}", entry.name), Command::PutBeside(Some(entry.id))).if_possible(here && other);
     }
-    list.add("One picture again", Command::PutBeside(None)).if_possible(state.beside.chosen.is_some());
+    panes(list, state);
     let outline = state.tree.outline.as_ref();
     for rank in Rank::ALL {
         let row = outline.and_then(|outline| outline.greatest(rank));
@@ -243,6 +244,30 @@ fn structure(list: &mut List, state: &State) {
     list.add("Open all of the tree", Command::OpenBelow(0)).if_possible(outline.is_some());
     let hide = !state.settings.hide_outcome;
     list.add(if hide { "Hide outcomes" } else { "Show outcomes" }, Command::HideOutcome(hide));
+}
+
+/// Pictures beside each other.
+fn panes(list: &mut List, state: &State) {
+    let (panes, comparing) = (&state.settings.panes, state.is_comparing());
+    list.add("One picture again", Command::PutBeside(None)).if_possible(!panes.others.is_empty());
+    let next = panes.others.len();
+    for entry in registry::ALL {
+        let add = Command::PutPane(next, PaneChoice::of(entry, &state.settings));
+        list.add(format!("Compare also with {}", entry.name), add).if_possible(comparing && next + 1 < MOST);
+    }
+    for (which, choice) in panes.on_screen().iter().enumerate() {
+        let letter = LETTERS[which + 1];
+        list.add(format!("Close pane {letter}"), Command::ClosePane(which)).if_possible(comparing);
+        list.add(format!("Parameters of pane {letter}"), Command::TunePane(Some(which))).if_possible(comparing);
+        let less = PaneChoice { shows: Shows::Difference, ..choice.clone() };
+        let possible = comparing && state.settings.mode.is_heat() && choice.shows != Shows::Difference;
+        list.add(format!("Difference: A less {letter}"), Command::PutPane(which, less)).if_possible(possible);
+    }
+    for arrange in Arrange::ALL {
+        let other = comparing && arrange != panes.arrange;
+        list.add(format!("Compare in: {}", arrange.label()), Command::Arrange(arrange)).if_possible(other);
+    }
+    list.add("Fit the shared range of colours", Command::FitRange).if_possible(state.shares_ranges());
 }
 
 fn ray(list: &mut List, state: &State) {

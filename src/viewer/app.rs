@@ -67,6 +67,7 @@ impl App {
         let stored: Option<Settings> = cc.storage.and_then(|s| eframe::get_value(s, SETTINGS));
         let mut settings = if options.is_scripted() { Settings::default() } else { stored.unwrap_or_default() };
         options.apply(&mut settings);
+        settings.panes.mend();
 
         let ctx = cc.egui_ctx.clone();
         let budget = options.memory_mib.or(settings.memory_mib).map_or_else(Budget::half_of_machine, Budget::of_mib);

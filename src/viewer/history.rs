@@ -4,6 +4,7 @@
 use std::time::{Duration, Instant};
 
 use super::command::Command;
+use super::panes::PaneSettings;
 use super::pick::Picked;
 use super::settings::{OverlaySettings, Settings};
 use crate::geometry::tri::TestKind;
@@ -89,6 +90,9 @@ pub struct Choices {
     params: std::collections::BTreeMap<String, std::collections::BTreeMap<String, String>>,
     test: TestKind,
     overlay: OverlaySettings,
+    /// Pictures beside the first.
+    #[serde(skip)]
+    panes: PaneSettings,
     /// What is selected.
     #[serde(skip)]
     pub picked: Option<Picked>,
@@ -102,6 +106,7 @@ impl Choices {
             params: settings.params.clone(),
             test: settings.test,
             overlay: settings.overlay,
+            panes: settings.panes.clone(),
             picked: picked.cloned(),
         }
     }
@@ -112,12 +117,24 @@ impl Choices {
         settings.params.clone_from(&self.params);
         settings.test = self.test;
         settings.overlay = self.overlay;
+        // Dividers that were moved since stay where they are.
+        let dividers = std::mem::take(&mut settings.panes.dividers);
+        settings.panes = self.panes.clone();
+        if settings.panes.on_screen().len() == dividers.len() {
+            settings.panes.dividers = dividers;
+        }
+    }
+
+    /// The same, with what is compared now.
+    pub fn beside(self, settings: &Settings) -> Self {
+        Self { panes: settings.panes.clone(), ..self }
     }
 
     /// The kind of change that a command makes to them, if it makes one at once.
     pub const fn changed_by(command: &Command) -> Option<Kind> {
         match command {
             Command::Structure(_) | Command::Test(_) | Command::OpenCase(_) => Some(Kind::Single),
+            Command::PutBeside(_) | Command::PutPane(..) | Command::ClosePane(_) | Command::Arrange(_) => Some(Kind::Single),
             Command::Params(_) => Some(Kind::Params),
             Command::Overlay(_) => Some(Kind::Overlay),
             _ => None,

@@ -3,7 +3,6 @@
 
 pub mod actions;
 pub mod app;
-pub mod beside;
 pub mod checks;
 pub mod command;
 pub mod dialogs;
@@ -22,6 +21,7 @@ mod options;
 mod overlay;
 mod pace;
 pub mod panels;
+pub mod panes;
 pub mod pick;
 pub mod rays;
 mod rays_over;

@@ -38,12 +38,6 @@ pub struct WorkspaceFile {
     pub beside: Vec<String>,
     /// The views that were kept.
     pub bookmarks: Vec<Bookmark>,
-    /// The second structure of a split picture, and where its part begins.
-    #[serde(default)]
-    pub split: Option<String>,
-    /// From 0 to 1.
-    #[serde(default)]
-    pub divider: f32,
 }
 
 impl WorkspaceFile {
@@ -62,8 +56,6 @@ impl WorkspaceFile {
             ray_kind: RayKind::Primary.id().to_owned(),
             beside: Vec::new(),
             bookmarks: Vec::new(),
-            split: None,
-            divider: 0.5,
         }
     }
 

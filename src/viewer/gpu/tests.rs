@@ -67,6 +67,8 @@ fn picture(generation: u64, width: u32, height: u32, rgba: Vec<u8>, depth: Vec<f
         rgba,
         depth: Arc::new(depth),
         range,
+        suits: range,
+        amounts: None,
         progress: Default::default(),
         shots: Vec::new(),
     }

@@ -68,6 +68,7 @@ pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
 
 /// Esc ends the innermost of what is going on.
 fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
+    let building = state.pane_in_building().map(|(which, _)| which);
     let innermost = [
         (state.palette, Command::Palette(false)),
         (state.help, Command::Help(false)),
@@ -80,7 +81,8 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.needing.is_some(), Command::CancelNeeds),
         (state.causes.running.is_some(), Command::CancelCauses),
         (state.rays.following.is_some(), Command::CancelFollow),
-        (state.beside.building.is_some(), Command::PutBeside(None)),
+        (state.panes.tuned.is_some(), Command::TunePane(None)),
+        (building.is_some(), Command::ClosePane(building.unwrap_or_default())),
         (state.checks.checking.is_some(), Command::CancelCheck),
         (state.errors.making.is_some(), Command::CancelReference),
         (state.tradeoffs.running.is_some(), Command::CancelTradeoffs),

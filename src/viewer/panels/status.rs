@@ -45,7 +45,7 @@ fn doing(state: &State) -> Option<String> {
         let now = building.job.progress.snapshot();
         return Some(format!("Building {}{}", building.key.entry.name, share(now.fraction)));
     }
-    if let Some(building) = &state.beside.building {
+    if let Some((_, building)) = state.pane_in_building() {
         let now = building.job.progress.snapshot();
         return Some(format!("Building {} beside{}", building.key.entry.name, share(now.fraction)));
     }

@@ -73,7 +73,7 @@ impl State {
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
         self.shared.give_back(before.columns);
         self.awaited = None;
-        self.forget_beside();
+        self.forget_panes();
         self.bring_back();
         if self.checks.selected.is_some_and(|cell| model::case_name(cell.case) == name) {
             self.checks.mark_case(&model.rays);

@@ -1,7 +1,6 @@
 //! What the window knows, and how commands change it; `finished` is what finished jobs change, and
 //! `refresh` what is asked for anew when the view changes. No drawing here.
 
-mod besides;
 mod bookmarks;
 mod causes;
 mod checking;
@@ -11,12 +10,14 @@ mod exploring;
 mod finished;
 mod following;
 mod keeping;
+mod panes;
 mod refresh;
 mod saving;
 mod trading;
 
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
+pub use panes::{Pane, Panes};
 use saving::Saving;
 
 use std::path::PathBuf;
@@ -24,7 +25,6 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-use super::beside::{Beside, Pauses};
 use super::checks::Checks;
 use super::command::Command;
 use super::dialogs::FileDialog;
@@ -36,6 +36,7 @@ use super::kept::{Built, Kept, Key};
 use super::model::{Instances, Model};
 use super::navigation;
 use super::overlay::{Collected, Wanted};
+use super::panes::Pauses;
 use super::pick::Picked;
 use super::rays::Rays;
 use super::settings::{Settings, Workspace};
@@ -95,10 +96,8 @@ pub struct State {
     pub tree: Tree,
     /// Why rays are slow in the shown structure.
     pub causes: Causes,
-    /// The second structure of a split picture.
-    pub beside: Beside,
-    /// What its renderer was last asked for.
-    requested_beside: Option<Asked>,
+    /// Pictures beside that of the shown structure.
+    pub panes: Panes,
     /// Threads that trace.
     trace_pool: Pool,
     /// The ray of the Ray workspace.
@@ -197,6 +196,8 @@ struct Asked {
     camera: Camera,
     mode: Mode,
     range: Option<Range>,
+    /// Whether amounts come with the picture.
+    amounts: bool,
     size_px: [u32; 2],
     max_samples: u32,
     /// Which textures were there.
@@ -248,8 +249,7 @@ impl State {
             tradeoffs: Tradeoffs::default(),
             tree: Tree::default(),
             causes: Causes::default(),
-            beside: Beside::default(),
-            requested_beside: None,
+            panes: Panes::default(),
             trace_pool: pool.clone(),
             rays: Rays::default(),
             picked: None,
@@ -347,6 +347,7 @@ impl State {
             || self.rays.following.is_some()
             || self.saving.is_busy()
             || self.awaited.is_some()
+            || self.panes_are_busy()
             || drawing
     }
 
@@ -469,7 +470,12 @@ impl State {
             Command::Terms(open) => self.terms = open,
             Command::Present(present) => self.presenting = present,
             Command::PutBeside(id) => self.put_beside(id),
-            Command::Divider(at) => self.beside.divider = at.clamp(0.0, 1.0),
+            Command::PutPane(which, choice) => self.put_pane(which, choice),
+            Command::ClosePane(which) => self.close_pane(which),
+            Command::TunePane(which) => self.panes.tuned = which,
+            Command::Arrange(arrange) => self.settings.panes.arrange = arrange,
+            Command::Divider(which, at) => self.settings.panes.move_divider(which, at),
+            Command::FitRange => self.fit_anew(),
             Command::SaveWorkspace => self.ask_where_to_save(),
             Command::AddBookmark => self.add_bookmark(),
             Command::Bookmark(at) => self.go_to_bookmark(at),
@@ -668,7 +674,7 @@ impl State {
         self.advance_check();
         self.follow_viewport();
         self.refresh_picture();
-        self.advance_beside();
+        self.advance_panes();
         self.advance_errors();
         self.advance_tradeoffs();
         self.advance_statistics();

@@ -37,7 +37,8 @@ impl State {
             model: self.models,
             camera: self.camera,
             mode,
-            range: self.range,
+            range: self.range.or_else(|| self.range_of(mode)),
+            amounts: self.wants_amounts(),
             size_px: self.size_px,
             max_samples,
             textured: self.textures,
@@ -50,7 +51,8 @@ impl State {
             let sampling = Sampling { kind: asked.sampler, seed: 0 };
             let job = render::Job { sampling, ..render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks)) };
             let keep = asked.keeps.then(|| self.shared.budget.clone());
-            let request = Request { job, width, height, max_samples, range: self.range, tone: asked.tone, keep };
+            let request =
+                Request { job, width, height, max_samples, range: asked.range, amounts: asked.amounts, tone: asked.tone, keep };
             let number = self.renderer.request(request);
             self.follow_errors(&asked);
             self.requested = Some(Asked { number, ..asked });
