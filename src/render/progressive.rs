@@ -7,6 +7,7 @@
 //!               └─ each finished pass becomes a Picture; a new request stops the pass that runs
 //! ```
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -25,6 +26,9 @@ const COARSEST: u32 = 64;
 const FIRST_OVERHEAD_SECS: f64 = 2e-7;
 /// Camera rays counted for the figures beside the picture.
 const COUNTED: u32 = 48;
+
+/// Counts pictures: those of several renderers are told apart, too.
+static GENERATION: AtomicU64 = AtomicU64::new(1);
 
 /// What the window wants to see.
 #[derive(Clone, Debug)]
@@ -94,7 +98,7 @@ impl Renderer {
     /// If the system grants no thread.
     pub fn new(pool: Pool, notify: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(Shared { state: Mutex::default(), wake: Condvar::new() });
-        let worker = Worker { shared: Arc::clone(&shared), pool, generation: 0, overhead_secs: FIRST_OVERHEAD_SECS, notify };
+        let worker = Worker { shared: Arc::clone(&shared), pool, overhead_secs: FIRST_OVERHEAD_SECS, notify };
         let thread = std::thread::Builder::new().name("render".into()).spawn(move || worker.run())?;
         Ok(Self { shared, thread: Some(thread) })
     }
@@ -187,7 +191,6 @@ impl Shared {
 struct Worker<N> {
     shared: Arc<Shared>,
     pool: Pool,
-    generation: u64,
     /// Seconds that a pixel takes besides finding its hit: making the ray, shading, developing; learnt
     /// from pass to pass.
     overhead_secs: f64,
@@ -351,10 +354,9 @@ impl<N: Fn()> Worker<N> {
             counted: task.counted,
             done,
         };
-        self.generation += 1;
         let rgba = self.pool.run(|| Development { mode, range, tone: task.request.tone, background: None }.develop(film));
         let picture = Picture {
-            generation: self.generation,
+            generation: GENERATION.fetch_add(1, Ordering::Relaxed),
             request: task.number,
             camera: task.request.job.camera,
             width: film.width(),

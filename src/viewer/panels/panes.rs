@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, places: &[Place], state: &State, commands: &mut Command
 
 /// Adds something in a part of the view.
 fn within(ui: &mut Ui, rect: Rect, salt: (&str, usize), add: impl FnOnce(&mut Ui)) {
-    let inner = rect.shrink2(vec2(theme::GRID, 0.0));
+    let inner = rect.shrink2(vec2(theme::GRID, 0.5 * theme::GRID));
     if !inner.is_positive() {
         return;
     }
@@ -142,6 +142,7 @@ fn tune(ui: &Ui, places: &[Place], state: &State, commands: &mut Commands) {
     let (letter, key) = (LETTERS[which + 1], choice.key());
     let mut open = true;
     let window = Window::new(format!("{letter}: {}", key.entry.name)).open(&mut open).collapsible(false).resizable(false);
+    let window = window.id(ui.scope_id().with("parameters of a pane"));
     window.default_pos(place.head.left_bottom()).default_width(theme::LEFT_PANEL).show(ui.ctx(), |ui| {
         ui.add_enabled_ui(!state.is_measuring(), |ui| {
             if let Some(test) = structure::test(ui, key.test) {

@@ -57,8 +57,8 @@ fn grid(rect: Rect, [columns, rows]: [usize; 2], pixels_per_point: f32) -> Vec<P
     let whole = |x: f32| (x * pixels_per_point).floor() / pixels_per_point;
     let [across, down] = [columns as f32, rows as f32];
     let size = vec2(
-        whole((rect.width() - theme::GRID * (across - 1.0)) / across),
-        whole((rect.height() - theme::GRID * (down - 1.0)) / down),
+        whole((rect.width() - theme::GRID * (across - 1.0)) / across).max(0.0),
+        whole((rect.height() - theme::GRID * (down - 1.0)) / down).max(0.0),
     );
     let origin = pos2(whole(rect.left()), whole(rect.top()));
     let step = vec2(size.x + whole(theme::GRID), size.y + whole(theme::GRID));

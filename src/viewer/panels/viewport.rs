@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo};
 use glam::Vec2;
 
 use super::split::{self, Place};
@@ -45,8 +45,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         let stroke = egui::Stroke::new(1.0, Palette::in_ui(ui).accent_text);
         ui.painter().rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Inside);
     }
-    captions::show(ui, view, state);
-    if compared.is_some() {
+    if compared.is_none() {
+        captions::show(ui, view, state);
+    } else {
+        let mut over = ui.new_child(UiBuilder::new().max_rect(view));
+        over.shrink_clip_rect(view); // they belong to one of several views
+        captions::show(&over, view, state);
         split::dividers(ui, &places, state, commands);
         panes::show(ui, &places, state, commands);
     }

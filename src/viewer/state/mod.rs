@@ -8,6 +8,7 @@ mod dialog;
 mod erring;
 mod exploring;
 mod finished;
+mod fitting;
 mod following;
 mod keeping;
 mod panes;

@@ -2,18 +2,19 @@
 
 use std::sync::Arc;
 
+use super::fitting::Fit;
 use super::{Asked, State};
 use crate::accel::BuildError;
 use crate::accel::registry;
 use crate::job::{Job, Outcome};
 use crate::render::sampler::Sampling;
-use crate::render::{self, Mode, Picture, Range, Renderer, Request};
+use crate::render::{self, Mode, Picture, Renderer, Request};
 use crate::task::Cancelled;
 use crate::viewer::gpu::{Overlay, View};
 use crate::viewer::kept::{Built, Key};
 use crate::viewer::overlay::{Collected, Wanted};
 use crate::viewer::panes::{PaneChoice, Pauses};
-use crate::viewer::settings::Workspace;
+use crate::viewer::settings::{BoxColor, OverlaySettings, Workspace};
 use crate::viewer::shown;
 use crate::viewer::workers::{self, Building, Collecting};
 
@@ -23,7 +24,7 @@ pub struct Panes {
     /// Those on the screen, in the order of their choices.
     pub all: Vec<Pane>,
     /// The range of each kind of amounts that several pictures show.
-    fits: Vec<Fit>,
+    pub(super) fits: Vec<Fit>,
     /// The one whose parameters are open.
     pub tuned: Option<usize>,
 }
@@ -45,19 +46,11 @@ pub struct Pane {
     pub overlay: Option<Arc<Overlay>>,
     /// What traces it, from the first time on.
     renderer: Option<Renderer>,
-    requested: Option<Asked>,
+    pub(super) requested: Option<Asked>,
     differing: Option<(Compared, Job<Result<Picture, Cancelled>>)>,
     differs_for: Option<Compared>,
     collecting: Option<(Wanted, Collecting)>,
     collected_for: Option<Wanted>,
-}
-
-/// A range that pictures share.
-struct Fit {
-    mode: Mode,
-    range: Range,
-    /// The structures that it was found for; none if it is to be found anew.
-    of: Vec<Key>,
 }
 
 /// Which pictures a difference is of.
@@ -88,7 +81,7 @@ impl Pane {
     }
 
     /// The newest picture, if it answers what was last asked for, at full resolution.
-    fn whole(&self) -> Option<&Picture> {
+    pub(super) fn whole(&self) -> Option<&Picture> {
         let asked = self.requested.as_ref()?;
         self.picture.as_deref().filter(|picture| picture.request == asked.number && picture.progress.step == 1)
     }
@@ -171,8 +164,8 @@ impl State {
     /// Builds what is missing, and asks for pictures where the view has changed.
     pub(super) fn advance_panes(&mut self) {
         let wanted = if self.is_comparing() { self.settings.panes.on_screen().len() } else { 0 };
+        self.panes.tuned = self.panes.tuned.filter(|which| *which < wanted);
         if wanted == 0 && !self.panes.all.is_empty() {
-            self.panes.tuned = None;
             return self.forget_panes();
         }
         if self.panes.all.len() > wanted {
@@ -311,7 +304,9 @@ impl State {
 
     /// The boxes of the pane's own structure that the present view is to show.
     fn wanted_boxes(&self) -> Option<Wanted> {
-        let (model, settings) = (self.model.as_ref()?, self.settings.overlay);
+        // Amounts of its cells are not known: they stand in the list of the shown structure's.
+        let settings = OverlaySettings { color: BoxColor::Depth, ..self.settings.overlay };
+        let model = self.model.as_ref()?;
         // Which of its cells would be below the selected one nobody can say.
         let drawn = (settings.boxes || settings.planes) && !settings.subtree_only;
         let view = View::new(&self.camera, model.geometry.space(), self.aspect());
@@ -343,77 +338,12 @@ impl State {
         }
     }
 
-    /// The range that amounts of a kind are to be mapped with: the user's for those of A, or the one that pictures share.
-    pub fn range_of(&self, mode: Mode) -> Option<Range> {
-        let fixed = self.range.filter(|_| mode == self.settings.mode);
-        fixed.or_else(|| self.panes.fits.iter().find(|fit| fit.mode == mode).map(|fit| fit.range))
-    }
-
-    /// Whether several pictures share a range.
-    pub fn shares_ranges(&self) -> bool {
-        self.is_comparing() && !self.panes.fits.is_empty()
-    }
-
-    /// Finds the shared ranges anew.
-    pub(super) fn fit_anew(&mut self) {
-        self.range = None;
-        self.panes.fits.iter_mut().for_each(|fit| fit.of.clear());
-    }
-
-    /// The kinds of amounts that several pictures show, and the structures of each.
-    fn shared_modes(&self) -> Vec<(Mode, Vec<Key>)> {
-        let Some(first) = self.requested.as_ref().filter(|_| self.is_comparing()) else { return Vec::new() };
-        let mut modes = vec![(first.mode, vec![first.key.clone()])];
-        for choice in self.settings.panes.on_screen().iter().filter(|choice| !choice.differs(first.mode)) {
-            let mode = choice.mode(first.mode);
-            match modes.iter_mut().find(|(known, _)| *known == mode) {
-                Some((_, keys)) => keys.push(choice.key()),
-                None => modes.push((mode, vec![choice.key()])),
-            }
-        }
-        modes.retain(|(mode, keys)| mode.is_heat() && keys.len() > 1);
-        modes
-    }
-
-    /// Finds the ranges of pictures that show amounts of one kind, once all of them are whole: that of the largest. It stays,
-    /// while the camera moves, until there are other structures or somebody asks.
-    fn fit_ranges(&mut self) {
-        let modes = self.shared_modes();
-        self.panes.fits.retain(|fit| modes.iter().any(|(mode, _)| *mode == fit.mode));
-        for (mode, of) in modes {
-            if self.panes.fits.iter().any(|fit| fit.mode == mode && fit.of == of) {
-                continue;
-            }
-            let Some(range) = self.suiting(mode) else { continue };
-            self.panes.fits.retain(|fit| fit.mode != mode);
-            self.panes.fits.push(Fit { mode, range, of });
-            (self.shared.wake)(); // pictures are mapped anew in the next frame
-        }
-    }
-
-    /// The range that suits all pictures of a kind, if all are whole.
-    fn suiting(&self, mode: Mode) -> Option<Range> {
-        let asked = self.requested.as_ref()?;
-        let whole = |picture: &&Picture| picture.request == asked.number && picture.progress.step == 1;
-        let mut all = Vec::new();
-        if asked.mode == mode {
-            all.push(self.picture.as_deref().filter(whole)?.suits);
-        }
-        for (pane, choice) in self.panes.all.iter().zip(self.settings.panes.on_screen()) {
-            if choice.mode(asked.mode) == mode && !choice.differs(asked.mode) {
-                let current = pane.requested.as_ref().is_some_and(|requested| requested.mode == mode);
-                all.push(pane.whole().filter(|_| current)?.suits);
-            }
-        }
-        all.into_iter().reduce(|a, b| Range { min: a.min.min(b.min), max: a.max.max(b.max) })
-    }
-
     /// Whether anything runs that will change what is shown beside A.
     pub(super) fn panes_are_busy(&self) -> bool {
         if !self.is_comparing() || self.shown.is_none() {
             return false;
         }
-        let current = |(mode, of): &(Mode, Vec<Key>)| self.panes.fits.iter().any(|fit| fit.mode == *mode && fit.of == *of);
+        let current = |(mode, of): &(Mode, Vec<Key>)| self.panes.fits.iter().any(|fit| fit.is_of(*mode, of));
         let fitted = self.shared_modes().iter().all(current);
         let range = self.range.or_else(|| self.range_of(self.settings.mode));
         let mapped = self.requested.as_ref().is_some_and(|asked| asked.range == range);
