@@ -254,7 +254,8 @@ fn heats(state: &State) -> Vec<(usize, Heat)> {
 
 /// What the colours of a difference stand for.
 fn less(state: &State, which: usize, picture: &Picture) -> Heat {
-    let (a, b) = (state.settings.entry().short, state.settings.panes.others[which].entry().short);
+    let first = state.shown.as_ref().map_or_else(|| state.settings.entry(), |shown| shown.key.entry);
+    let (a, b) = (first.short, state.settings.panes.others[which].entry().short);
     let letter = LETTERS[which + 1];
     let [a, b] = if a == b { [LETTERS[0], letter] } else { [a, b] };
     let size = format::number(picture.range.max.into());

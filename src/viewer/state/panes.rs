@@ -58,6 +58,8 @@ pub struct Pane {
 struct Compared {
     /// The requests that they answer.
     requests: [u64; 2],
+    /// The amounts.
+    mode: Mode,
     /// Grows as samples double.
     stage: u32,
     done: bool,
@@ -65,12 +67,12 @@ struct Compared {
 
 impl Compared {
     /// Of two whole pictures of one view that bring their amounts.
-    fn of(first: &Picture, second: &Picture) -> Option<Self> {
+    fn of(mode: Mode, first: &Picture, second: &Picture) -> Option<Self> {
         let one_view = first.camera == second.camera && (first.width, first.height) == (second.width, second.height);
         let there = one_view && first.amounts.is_some() && second.amounts.is_some();
         let [a, b] = [first, second].map(|picture| picture.progress);
         let stage = a.samples.min(b.samples).checked_ilog2().unwrap_or(0);
-        there.then_some(Self { requests: [first.request, second.request], stage, done: a.done && b.done })
+        there.then_some(Self { requests: [first.request, second.request], mode, stage, done: a.done && b.done })
     }
 }
 
@@ -279,6 +281,9 @@ impl State {
                 Outcome::Done(Err(_)) | Outcome::Died => pane.differs_for = Some(of),
             }
         }
+        if pane.differs_for.is_some_and(|of| of.mode != self.settings.mode) {
+            pane.difference = None; // of other amounts
+        }
         let Some((of, first, second)) = self.to_compare(pane) else { return };
         if pane.differing.is_some() || pane.differs_for == Some(of) {
             return;
@@ -292,7 +297,7 @@ impl State {
         let (first, second) = (self.picture.as_ref()?, pane.picture.as_ref()?);
         let [asked, beside] = [self.requested.as_ref()?, pane.requested.as_ref()?];
         let answered = first.request == asked.number && second.request == beside.number && asked.mode == beside.mode;
-        let of = Compared::of(first, second).filter(|_| answered)?;
+        let of = Compared::of(asked.mode, first, second).filter(|_| answered)?;
         Some((of, Arc::clone(first), Arc::clone(second)))
     }
 
