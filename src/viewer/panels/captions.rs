@@ -41,8 +41,8 @@ fn captions(state: &State) -> Vec<Caption> {
     let change = state.change.as_ref().filter(|(_, until)| *until > Instant::now()).map(|(text, _)| text.clone());
     let check = state.settings.workspace == Workspace::Check && !state.checks.caption.is_empty();
     let marked = check.then(|| state.checks.caption.clone()).or_else(|| moment(state));
-    // Their corners are taken where pictures are compared.
-    let (coarse, marked) = if state.is_comparing() { (None, None) } else { (coarse, marked) };
+    // Where pictures are compared names stand there, and the figures beneath.
+    let (coarse, marked, change) = if state.is_comparing() { (None, None, None) } else { (coarse, marked, change) };
     let at = |at| move |text| Caption::new(at, text);
     let above = |text| Caption { row: 1, ..Caption::new(Align2::LEFT_BOTTOM, text) };
     let lines = [
