@@ -99,6 +99,15 @@ pub struct Args {
     /// Begin the tour at this step, 1 to 6.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=6), conflicts_with_all = ["measure", "check", "errors", "select", "follow", "rays"])]
     pub tour: Option<u8>,
+    /// Begin in the Compare workspace with these structures beside each other, two to four between commas.
+    #[arg(long, value_name = "IDS", value_delimiter = ',', conflicts_with_all = ["structure", "check", "errors", "select", "follow"])]
+    pub panes: Vec<One>,
+    /// How they stand: divider, two or four.
+    #[arg(long, value_name = "HOW", value_parser = ["divider", "two", "four"], requires = "panes")]
+    pub arrange: Option<String>,
+    /// The last of them shows what rays do more in the first than in it; with --mode nodes, leaves or prims.
+    #[arg(long, requires = "panes")]
+    pub difference: bool,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
@@ -143,6 +152,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
         beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),
         brute: args.check_brute,
         tour: args.tour.map(|step| usize::from(step) - 1),
+        panes: args.panes.into_iter().map(|one| one.0.id.to_owned()).collect(),
+        arrange: args.arrange.and_then(|how| how.parse().ok()),
+        difference: args.difference,
         pace: args.pace,
         endure: args.endure,
         screenshot: args.screenshot,

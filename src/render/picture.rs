@@ -30,6 +30,8 @@ pub struct Picture {
     pub range: Range,
     /// The amounts of a heat map.
     pub amounts: Option<Arc<Amounts>>,
+    /// The range that would suit them.
+    pub suits: Range,
     /// How far the picture is.
     pub progress: Progress,
     /// What was kept on the way, if that was asked for.

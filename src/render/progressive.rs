@@ -7,6 +7,7 @@
 //!               └─ each finished pass becomes a Picture; a new request stops the pass that runs
 //! ```
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -25,6 +26,9 @@ const COARSEST: u32 = 64;
 const FIRST_OVERHEAD_SECS: f64 = 2e-7;
 /// Camera rays counted for the figures beside the picture.
 const COUNTED: u32 = 48;
+
+/// Counts pictures: those of several renderers are told apart, too.
+static GENERATION: AtomicU64 = AtomicU64::new(1);
 
 /// What the window wants to see.
 #[derive(Clone, Debug)]
@@ -93,7 +97,7 @@ impl Renderer {
     /// If the system grants no thread.
     pub fn new(pool: Pool, notify: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(Shared { state: Mutex::default(), wake: Condvar::new() });
-        let worker = Worker { shared: Arc::clone(&shared), pool, generation: 0, overhead_secs: FIRST_OVERHEAD_SECS, notify };
+        let worker = Worker { shared: Arc::clone(&shared), pool, overhead_secs: FIRST_OVERHEAD_SECS, notify };
         let thread = std::thread::Builder::new().name("render".into()).spawn(move || worker.run())?;
         Ok(Self { shared, thread: Some(thread) })
     }
@@ -186,7 +190,6 @@ impl Shared {
 struct Worker<N> {
     shared: Arc<Shared>,
     pool: Pool,
-    generation: u64,
     /// Seconds that a pixel takes besides finding its hit: making the ray, shading, developing; learnt
     /// from pass to pass.
     overhead_secs: f64,
@@ -198,7 +201,8 @@ struct Task {
     request: Request,
     number: u64,
     start: Instant,
-    range: Option<Range>,
+    /// The range that suits the first full pass.
+    suits: Option<Range>,
     counts: Counts,
     counted: u64,
     /// Seconds to find a camera ray's hit, as foreseen.
@@ -328,14 +332,14 @@ impl<N: Fn()> Worker<N> {
         if mode == Mode::Path && film.samples().is_power_of_two() {
             task.exposure = film.fitting_exposure();
         }
-        let range = if mode.is_scalar() {
-            *task.range.get_or_insert_with(|| auto_range(film, mode))
-        } else {
-            Range { min: 0.0, max: 1.0 }
+        let suits = match mode.is_scalar() {
+            true => task.suits.unwrap_or_else(|| auto_range(film, mode)),
+            false => Range { min: 0.0, max: 1.0 },
         };
-        if step > 1 && task.request.range.is_none() {
-            task.range = None; // a coarse pass does not settle the range
+        if step == 1 {
+            task.suits = Some(suits); // a coarse pass does not settle it
         }
+        let range = task.request.range.filter(|_| mode.is_scalar()).unwrap_or(suits);
         let done = step == 1 && film.is_done(task.request.max_samples);
         let progress = Progress {
             samples: film.samples(),
@@ -348,12 +352,11 @@ impl<N: Fn()> Worker<N> {
             counted: task.counted,
             done,
         };
-        self.generation += 1;
         let development = Development { mode, range, tone: task.request.tone, background: None };
         let amounts = || mode.is_heat().then(|| Arc::new(Amounts::of(film)));
         let (rgba, amounts) = self.pool.run(|| (development.develop(film), amounts()));
         let picture = Picture {
-            generation: self.generation,
+            generation: GENERATION.fetch_add(1, Ordering::Relaxed),
             request: task.number,
             camera: task.request.job.camera,
             width: film.width(),
@@ -362,6 +365,7 @@ impl<N: Fn()> Worker<N> {
             depth: Arc::clone(film.depth()),
             range,
             amounts,
+            suits,
             progress,
             shots: task.shots.clone(),
         };
@@ -411,7 +415,7 @@ impl Task {
         Self {
             number,
             start: Instant::now(),
-            range: request.range,
+            suits: None,
             counts: Counts::default(),
             counted: 0,
             ray_secs: 0.0,
@@ -428,7 +432,7 @@ impl Task {
     /// A new request after this one, which goes on with its samples where it can.
     fn after(self, request: Request, number: u64) -> Self {
         if self.film.as_ref().is_some_and(|film| film.samples() > 0) && request.has_samples_of(&self.request) {
-            Self { number, range: request.range, redevelop: true, request, ..self }
+            Self { number, redevelop: true, request, ..self }
         } else {
             Self::new(request, number)
         }

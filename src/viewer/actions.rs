@@ -7,6 +7,7 @@ use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use super::command::Command;
 use super::exports::{Export, Form};
 use super::panels::{self, toolbar};
+use super::panes::{Arrange, LETTERS, MOST, PaneChoice, Shows};
 use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, SectionSettings, ThemeChoice, Workspace};
 use super::sheets::What;
 use super::state::State;
@@ -308,7 +309,7 @@ fn structure(list: &mut List, state: &State) {
         let other = entry.id != state.settings.entry().id;
         list.add(format!("Split with {}", entry.name), Command::PutBeside(Some(entry.id))).if_possible(here && other);
     }
-    list.add("One picture again", Command::PutBeside(None)).if_possible(state.beside.chosen.is_some());
+    panes(list, state);
     let outline = state.tree.outline.as_ref();
     for rank in Rank::ALL {
         let row = outline.and_then(|outline| outline.greatest(rank));
@@ -333,6 +334,30 @@ fn film(list: &mut List, state: &State) {
     list.add("Film: start", Command::FilmTo(0)).if_possible(on_screen && at > 0);
     list.add("Film: end", Command::FilmTo(last)).if_possible(on_screen && at < last);
     list.add("Film: close", Command::CloseFilm).if_possible(filming.film.is_some());
+}
+
+/// Pictures beside each other.
+fn panes(list: &mut List, state: &State) {
+    let (panes, comparing) = (&state.settings.panes, state.is_comparing());
+    list.add("One picture again", Command::PutBeside(None)).if_possible(!panes.others.is_empty());
+    let next = panes.others.len();
+    for entry in registry::ALL {
+        let add = Command::PutPane(next, PaneChoice::of(entry, &state.settings));
+        list.add(format!("Compare also with {}", entry.name), add).if_possible(comparing && next + 1 < MOST);
+    }
+    for (which, choice) in panes.on_screen().iter().enumerate() {
+        let letter = LETTERS[which + 1];
+        list.add(format!("Close pane {letter}"), Command::ClosePane(which)).if_possible(comparing);
+        list.add(format!("Parameters of pane {letter}"), Command::TunePane(Some(which))).if_possible(comparing);
+        let less = PaneChoice { shows: Shows::Difference, ..choice.clone() };
+        let possible = comparing && state.settings.mode.is_heat() && choice.shows != Shows::Difference;
+        list.add(format!("Difference: A less {letter}"), Command::PutPane(which, less)).if_possible(possible);
+    }
+    for arrange in Arrange::ALL {
+        let other = comparing && arrange != panes.arrange;
+        list.add(format!("Compare in: {}", arrange.label()), Command::Arrange(arrange)).if_possible(other);
+    }
+    list.add("Fit the shared range of colours", Command::FitRange).if_possible(state.shares_ranges());
 }
 
 fn ray(list: &mut List, state: &State) {

@@ -71,6 +71,7 @@ impl App {
         let mut settings = if options.is_scripted() { Settings::default() } else { stored.unwrap_or_default() };
         options.apply(&mut settings);
         let tour = options.tour.or_else(|| is_first_start(cc, &options, &settings).then_some(0));
+        settings.panes.mend();
 
         let ctx = cc.egui_ctx.clone();
         let budget = options.memory_mib.or(settings.memory_mib).map_or_else(Budget::half_of_machine, Budget::of_mib);

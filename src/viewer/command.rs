@@ -4,6 +4,7 @@
 use super::checks::Cell;
 use super::exports::Export;
 use super::model::Instances;
+use super::panes::{Arrange, PaneChoice};
 use super::settings::{Navigation, OverlaySettings, SectionSettings, ThemeChoice, Workspace};
 use super::timings::Column;
 use super::tradeoffs::{Goodness, Miss, Plot};
@@ -212,10 +213,20 @@ pub enum Command {
     Tour(Option<usize>),
     /// For an audience: larger, and without panels; or back.
     Present(bool),
-    /// Split the picture: trace the right part through another structure; or one picture again.
+    /// Compare with the picture of a second structure; or one picture again.
     PutBeside(Option<&'static str>),
-    /// Where the right part begins, from 0 to 1.
-    Divider(f32),
+    /// Put another choice into a pane beside the first, counted from 0, or add one.
+    PutPane(usize, PaneChoice),
+    /// Close a pane beside the first.
+    ClosePane(usize),
+    /// Open the parameters of a pane, or close them.
+    TunePane(Option<usize>),
+    /// How compared pictures stand.
+    Arrange(Arrange),
+    /// Where the strip after a divider begins, from 0 to 1.
+    Divider(usize, f32),
+    /// Find the range that compared pictures share anew.
+    FitRange,
     /// Save the whole state of the window.
     SaveWorkspace,
     /// Save the report, a table, a plot, the figure or the picture.

@@ -319,6 +319,7 @@ mod tests {
             range: Range { min: 0.0, max: 1.0 },
             progress: crate::render::Progress::default(),
             amounts: None,
+            suits: Range { min: 0.0, max: 1.0 },
             shots: Vec::new(),
         };
         let cell = Aabb { min: Vec3::splat(-0.2), max: Vec3::splat(0.2) };

@@ -4,6 +4,7 @@
 use std::time::{Duration, Instant};
 
 use super::command::Command;
+use super::panes::PaneSettings;
 use super::pick::Picked;
 use super::settings::{OverlaySettings, SectionSettings, Settings};
 use crate::geometry::tri::TestKind;
@@ -96,6 +97,9 @@ pub struct Choices {
     overlay: OverlaySettings,
     #[serde(default)]
     section: SectionSettings,
+    /// Pictures beside the first.
+    #[serde(skip)]
+    panes: PaneSettings,
     /// What is selected.
     #[serde(skip)]
     pub picked: Option<Picked>,
@@ -110,6 +114,7 @@ impl Choices {
             test: settings.test,
             overlay: settings.overlay,
             section: settings.section,
+            panes: settings.panes.clone(),
             picked: picked.cloned(),
         }
     }
@@ -121,12 +126,24 @@ impl Choices {
         settings.test = self.test;
         settings.overlay = self.overlay;
         settings.section = self.section;
+        // Dividers that were moved since stay where they are.
+        let dividers = std::mem::take(&mut settings.panes.dividers);
+        settings.panes = self.panes.clone();
+        if settings.panes.on_screen().len() == dividers.len() {
+            settings.panes.dividers = dividers;
+        }
+    }
+
+    /// The same, with what is compared now.
+    pub fn beside(self, settings: &Settings) -> Self {
+        Self { panes: settings.panes.clone(), ..self }
     }
 
     /// The kind of change that a command makes to them, if it makes one at once.
     pub const fn changed_by(command: &Command) -> Option<Kind> {
         match command {
             Command::Structure(_) | Command::Test(_) | Command::OpenCase(_) => Some(Kind::Single),
+            Command::PutBeside(_) | Command::PutPane(..) | Command::ClosePane(_) | Command::Arrange(_) => Some(Kind::Single),
             Command::Params(_) => Some(Kind::Params),
             Command::Overlay(_) => Some(Kind::Overlay),
             Command::Section(_) => Some(Kind::Section),

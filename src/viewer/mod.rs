@@ -4,7 +4,6 @@
 pub mod actions;
 mod animation;
 pub mod app;
-pub mod beside;
 mod capture;
 pub mod brute;
 pub mod checks;
@@ -29,6 +28,7 @@ mod options;
 mod overlay;
 mod pace;
 pub mod panels;
+pub mod panes;
 pub mod pick;
 mod plots;
 pub mod ray_list;

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use super::panes::{Arrange, PaneChoice, Shows};
 use super::settings::{BoxColor, Settings, ThemeChoice, Workspace};
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
+use crate::accel::registry;
 use crate::geometry::Axis;
 use crate::render::{HeatRays, Mode};
 use crate::scene::{CameraSpec, Section};
@@ -64,6 +66,12 @@ pub struct ViewerOptions {
     pub brute: bool,
     /// Begin the tour at this step, from 0; without it, the first window of all begins it at the first.
     pub tour: Option<usize>,
+    /// Begin in the Compare workspace with these structures beside each other, the first of them the shown one.
+    pub panes: Vec<String>,
+    /// How they stand.
+    pub arrange: Option<Arrange>,
+    /// The last of them shows its difference from the first.
+    pub difference: bool,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
     /// Switch structures a thousand times and open fifty models before that, to see what becomes of the memory.
@@ -108,6 +116,7 @@ impl ViewerOptions {
                 settings.mode = Mode::Path;
             }
         }
+        self.compare(settings);
         let overlay = &mut settings.overlay;
         if let Some(depth) = self.depth {
             (overlay.depth, overlay.from_depth, overlay.boxes) = (depth, depth, true);
@@ -116,6 +125,24 @@ impl ViewerOptions {
         overlay.color = self.color_boxes.unwrap_or(overlay.color);
         if self.no_overlay {
             (overlay.boxes, overlay.planes) = (false, false);
+        }
+    }
+
+    /// Puts structures beside each other.
+    fn compare(&self, settings: &mut Settings) {
+        let mut entries = self.panes.iter().filter_map(|id| registry::find(id));
+        if let Some(first) = entries.next() {
+            first.id.clone_into(&mut settings.structure);
+            settings.workspace = Workspace::Compare;
+            settings.panes.others.clear();
+        }
+        for (which, entry) in entries.enumerate() {
+            let choice = PaneChoice::of(entry, settings);
+            settings.panes.put(which, choice);
+        }
+        settings.panes.arrange = self.arrange.unwrap_or(settings.panes.arrange);
+        if let Some(last) = settings.panes.others.last_mut().filter(|_| self.difference) {
+            last.shows = Shows::Difference;
         }
     }
 }

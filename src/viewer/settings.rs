@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::panes::PaneSettings;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
@@ -37,6 +38,8 @@ pub struct Settings {
     pub section: SectionSettings,
     /// What stands around the view.
     pub workspace: Workspace,
+    /// Pictures beside that of the structure.
+    pub panes: PaneSettings,
     /// How nodes are divided is hidden until asked.
     pub hide_outcome: bool,
     /// Light or dark.
@@ -71,6 +74,7 @@ impl Default for Settings {
             overlay: OverlaySettings::default(),
             section: SectionSettings::default(),
             workspace: Workspace::default(),
+            panes: PaneSettings::default(),
             hide_outcome: false,
             theme: ThemeChoice::default(),
             navigation: Navigation::default(),
@@ -201,7 +205,7 @@ pub enum Workspace {
     Structure,
     /// One ray, step by step.
     Ray,
-    /// The picture's error against what it costs.
+    /// Structures beside each other, and the picture's error against what it costs.
     Compare,
     /// The stability lab, and what is known to be wrong with the model.
     Check,
@@ -233,7 +237,7 @@ impl Workspace {
             Self::View => "Statistics of the structure, and timings of all of them.",
             Self::Structure => "The tree of cells, what each costs, and what dividing it otherwise would have cost.",
             Self::Ray => "One ray, step by step, through up to four structures.",
-            Self::Compare => "The error of the path traced picture, against samples and against seconds.",
+            Self::Compare => "Structures beside each other on one view, and the error of the picture against what it costs.",
             Self::Check => "Right answers: the stability lab, and a check of the open model.",
         }
     }

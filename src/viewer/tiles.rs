@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::beside::Pauses;
+use super::panes::Pauses;
 use super::kept::Key;
 use super::shown;
 use super::workers::Shared;

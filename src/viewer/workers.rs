@@ -5,11 +5,11 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-use super::beside::Pauses;
 use super::checks::{RAYS, SEED};
 use super::kept::{Built, Key};
 use super::model::{self, Instances, Model};
 use super::overlay::{self, Collected, Wanted};
+use super::panes::Pauses;
 use super::pick::{self, Picked};
 use super::shown;
 use super::tree::Listed;

@@ -43,12 +43,6 @@ pub struct WorkspaceFile {
     pub beside: Vec<String>,
     /// The views that were kept.
     pub bookmarks: Vec<Bookmark>,
-    /// The second structure of a split picture, and where its part begins.
-    #[serde(default)]
-    pub split: Option<String>,
-    /// From 0 to 1.
-    #[serde(default)]
-    pub divider: f32,
 }
 
 impl WorkspaceFile {
@@ -69,8 +63,6 @@ impl WorkspaceFile {
             tried: None,
             beside: Vec::new(),
             bookmarks: Vec::new(),
-            split: None,
-            divider: 0.5,
         }
     }
 

@@ -115,29 +115,31 @@ fn two_structures_trace_one_view_on_either_side_of_a_divider() {
     // Three clicks: the workspace, the list, the structure.
     w.button("Compare workspace");
     w.choose("No second", "and k-d tree");
-    w.until("two pictures", |s| s.is_split() && s.beside.picture.as_ref().is_some_and(|picture| picture.progress.done));
+    let beside = |s: &State| s.panes.all.first().and_then(|pane| pane.picture.clone());
+    w.until("two pictures", |s| s.is_split() && beside(s).is_some_and(|picture| picture.progress.done));
     w.settle();
     let state = w.state();
-    let (first, second) = (state.picture.as_ref().expect("traced"), state.beside.picture.as_ref().expect("traced"));
+    let (first, second) = (state.picture.clone().expect("traced"), beside(state).expect("traced"));
     assert_eq!((first.camera, first.range, first.width), (second.camera, second.range, second.width), "one view, one range");
     assert_ne!(first.rgba, second.rgba, "different structures");
     let nodes = |picture: &Picture| picture.progress.counts.nodes as f64 / picture.progress.counted as f64;
-    for (name, picture) in [("BVH", first), ("k-d tree", second)] {
+    for (name, picture) in [("BVH", &first), ("k-d tree", &second)] {
         assert!(w.says(&format!("{name}: {} nodes", format::number(nodes(picture)))), "{name}");
     }
     // The divider is moved by hand, by keys, and by typing.
     let view = w.viewport();
+    let divider = |w: &Window| w.state().settings.panes.places()[0];
     w.drag(view.center(), vec2(-0.25 * view.width(), 0.0), PointerButton::Primary, Modifiers::NONE);
-    assert!((w.state().beside.divider - 0.25).abs() < 0.02, "{}", w.state().beside.divider);
+    assert!((divider(&w) - 0.25).abs() < 0.02, "{}", divider(&w));
     let camera = w.state().camera;
     w.key(Modifiers::NONE, Key::ArrowRight);
-    assert!((w.state().beside.divider - 0.27).abs() < 0.02 && w.state().camera == camera);
+    assert!((divider(&w) - 0.27).abs() < 0.02 && w.state().camera == camera);
     // Both follow the camera.
-    w.drag(view.center() + vec2(60.0, 40.0), vec2(40.0, 0.0), PointerButton::Primary, Modifiers::NONE);
+    w.drag(view.center() + vec2(60.0, 20.0), vec2(40.0, 0.0), PointerButton::Primary, Modifiers::NONE);
     assert_ne!(w.state().camera, camera);
     w.until("two pictures from there", |s| {
         let there = |picture: &Option<Arc<Picture>>| picture.as_ref().is_some_and(|p| p.camera == s.camera && p.progress.done);
-        there(&s.picture) && there(&s.beside.picture)
+        there(&s.picture) && there(&beside(s))
     });
     // Where errors are measured against seconds nothing else is traced.
     w.choose(Mode::Nodes.label(), Mode::Path.label());

@@ -26,6 +26,7 @@ mod opening;
 mod overlays;
 mod pace;
 mod palette;
+mod panes;
 mod parameters;
 mod pixels;
 mod presenting;

@@ -69,6 +69,7 @@ fn picture(generation: u64, width: u32, height: u32, rgba: Vec<u8>, depth: Vec<f
         depth: Arc::new(depth),
         range,
         amounts: None,
+        suits: range,
         progress: Default::default(),
         shots: Vec::new(),
     }

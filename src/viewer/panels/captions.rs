@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use eframe::egui::{Align2, Color32, Pos2, Rect, Stroke, TextStyle, Ui, pos2, vec2};
+use eframe::egui::{Align2, Color32, Pos2, Rect, Stroke, TextStyle, Ui, Vec2, pos2, vec2};
 
 use crate::accel::cell::Layout;
 use crate::render::Range;
@@ -11,7 +11,6 @@ use crate::viewer::format;
 use crate::viewer::settings::{BoxColor, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
-use glam::Vec2;
 
 /// A line over the picture.
 struct Caption {
@@ -42,8 +41,8 @@ fn captions(state: &State) -> Vec<Caption> {
     let change = state.change.as_ref().filter(|(_, until)| *until > Instant::now()).map(|(text, _)| text.clone());
     let check = state.settings.workspace == Workspace::Check && !state.checks.caption.is_empty();
     let marked = check.then(|| state.checks.caption.clone()).or_else(|| moment(state)).or_else(|| filmed(state));
-    // Their corners are taken where the picture is split.
-    let (coarse, marked) = if state.is_split() { (None, None) } else { (coarse, marked) };
+    // Where pictures are compared names stand there, and the figures beneath.
+    let (coarse, marked, change) = if state.is_comparing() { (None, None, None) } else { (coarse, marked, change) };
     let at = |at| move |text| Caption::new(at, text);
     let above = |text| Caption { row: 1, ..Caption::new(Align2::LEFT_BOTTOM, text) };
     let lines = [
@@ -97,18 +96,37 @@ fn moment(state: &State) -> Option<String> {
 /// Colours from one end of a range, 0, to the other, 1.
 type Colors = fn(f32) -> [f32; 3];
 
-/// What colours stand for, if they are those of amounts: their name and range.
-fn heat(state: &State) -> Option<(String, Range, Colors)> {
+/// What colours of amounts stand for.
+pub struct Heat {
+    /// What they are amounts of.
+    pub name: String,
+    /// The colours.
+    pub colors: Colors,
+    /// What their ends stand for.
+    pub ends: [String; 2],
+    /// The same as amounts.
+    pub range: Range,
+}
+
+impl Heat {
+    /// Colours of a range.
+    pub fn new(name: String, range: Range, colors: Colors) -> Self {
+        Self { name, colors, ends: [range.min, range.max].map(|end| format::number(end.into())), range }
+    }
+}
+
+/// What the colours of the shown structure's picture stand for, if they are those of amounts.
+pub fn heat(state: &State) -> Option<Heat> {
     if state.is_held() && state.errors.chosen.is_some_and(|chosen| chosen.difference) {
         let range = state.on_screen()?.range;
-        return Some(("Brightness less the reference's".to_owned(), range, |t| difference(2.0 * t - 1.0)));
+        return Some(Heat::new("Brightness less the reference's".to_owned(), range, |t| difference(2.0 * t - 1.0)));
     }
     let each = state.settings.heat_rays.each();
     if state.shows_tiles() {
-        return Some((format!("Nanoseconds {each}, by tile"), state.on_screen()?.range, viridis));
+        return Some(Heat::new(format!("Nanoseconds {each}, by tile"), state.on_screen()?.range, viridis));
     }
     let range = state.picture.as_ref().filter(|_| state.settings.mode.is_heat())?.range;
-    Some((format!("{} {each}", state.settings.mode.label()), range, viridis))
+    Some(Heat::new(format!("{} {each}", state.settings.mode.label()), range, viridis))
 }
 
 /// What is to be seen, in sentences.
@@ -127,12 +145,11 @@ pub fn describe(state: &State) -> String {
         let samples = state.picture.as_ref().map_or(0, |p| p.progress.samples);
         sentences.push(format!("{structure}{depth}, {samples} samples a pixel"));
     }
-    sentences.extend(super::split::describe(state));
+    sentences.extend(super::panes::describe(state));
     sentences.extend(captions(state).into_iter().map(|caption| caption.text));
-    sentences.extend(heat(state).map(|(name, range, _)| {
-        let (min, max) = (format::number(range.min.into()), format::number(range.max.into()));
-        format!("Colours show {name}, from {min} to {max}")
-    }));
+    sentences.extend(
+        heat(state).map(|Heat { name, ends: [low, high], .. }| format!("Colours show {name}, from {low} to {high}")),
+    );
     sentences.extend(state.clicked_amount().map(|amount| format!("{} at the clicked pixel", format::number(amount.into()))));
     sentences.iter().map(|s| s.trim_end_matches(['.', '…'])).map(|s| format!("{s}.")).collect::<Vec<_>>().join(" ")
 }
@@ -152,17 +169,17 @@ pub fn show(ui: &Ui, rect: Rect, pointer: Option<Pos2>, state: &State) {
     if let Some(left) = state.change.as_ref().and_then(|(_, until)| until.checked_duration_since(Instant::now())) {
         ui.ctx().request_repaint_after(left);
     }
-    if let Some(heat) = heat(state).filter(|_| state.model.is_some()) {
+    if let Some(heat) = heat(state).filter(|_| state.model.is_some() && !state.is_comparing()) {
         let under = pointer.and_then(|at| amount_under(rect, at, state)).map(|amount| ("here", amount));
         let told = under.or_else(|| state.clicked_amount().map(|amount| ("clicked", amount)));
-        legend(ui, inner, heat, told);
+        legend(ui, inner, &heat, told);
     }
 }
 
 /// The amount under the pointer.
 fn amount_under(rect: Rect, at: Pos2, state: &State) -> Option<f32> {
     let within = (at - rect.min) / rect.size();
-    state.picture_at(within.x)?.amount_at(Vec2::new(within.x * 2.0 - 1.0, 1.0 - within.y * 2.0))
+    state.on_screen()?.amount_at(glam::Vec2::new(within.x * 2.0 - 1.0, 1.0 - within.y * 2.0))
 }
 
 /// Text on a plate, so that it can be read over any picture.
@@ -174,29 +191,34 @@ pub fn plate(ui: &Ui, at: Pos2, align: Align2, text: String) {
     ui.painter().galley(plate.center() - galley.size() * 0.5, galley, palette.text);
 }
 
-/// The colours of a heat map and what they stand for, and among them an amount that is told with its name.
-fn legend(ui: &Ui, inner: Rect, (name, range, color): (String, Range, Colors), told: Option<(&str, f32)>) {
+/// The size of what [`legend`] draws.
+pub const LEGEND: Vec2 = Vec2::new(52.0 * theme::GRID, 13.0 * theme::GRID);
+
+/// The colours of a heat map and what they stand for, in the lower right corner of a part of the window, and among them an amount
+/// that is told with its name.
+pub fn legend(ui: &Ui, inner: Rect, heat: &Heat, told: Option<(&str, f32)>) {
     const STEPS: u32 = 48;
-    let width = 48.0 * theme::GRID;
     let palette = Palette::in_ui(ui);
-    let plate =
-        Rect::from_min_max(inner.right_bottom() - vec2(width + 2.0 * theme::GUTTER, 13.0 * theme::GRID), inner.right_bottom());
+    let plate = Rect::from_min_max(inner.right_bottom() - LEGEND, inner.right_bottom());
+    let width = LEGEND.x - 2.0 * theme::GUTTER;
     ui.painter().rect_filled(plate, theme::GRID, theme::plate(palette));
     let bar = Rect::from_min_size(plate.left_top() + vec2(theme::GUTTER, 6.0 * theme::GRID), vec2(width, 2.0 * theme::GRID));
     for i in 0..STEPS {
         let x = |i: u32| bar.left() + bar.width() * i as f32 / STEPS as f32;
-        let [r, g, b] = color((i as f32 + 0.5) / STEPS as f32).map(|c| (c * 255.0) as u8);
+        let [r, g, b] = (heat.colors)((i as f32 + 0.5) / STEPS as f32).map(|c| (c * 255.0) as u8);
         let step = Rect::from_min_max(pos2(x(i), bar.top()), pos2(x(i + 1), bar.bottom()));
         ui.painter().rect_filled(step, 0.0, Color32::from_rgb(r, g, b));
     }
     let text = |at: Pos2, align: Align2, text: String| {
         ui.painter().text(at, align, text, TextStyle::Small.resolve(ui.style()), palette.text);
     };
-    text(bar.left_top() - vec2(0.0, theme::GRID), Align2::LEFT_BOTTOM, name);
-    text(bar.left_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::LEFT_TOP, format::number(range.min.into()));
-    text(bar.right_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::RIGHT_TOP, format::number(range.max.into()));
+    text(bar.left_top() - vec2(0.0, theme::GRID), Align2::LEFT_BOTTOM, heat.name.clone());
+    let [low, high] = heat.ends.clone();
+    text(bar.left_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::LEFT_TOP, low);
+    text(bar.right_bottom() + vec2(0.0, theme::GRID * 0.5), Align2::RIGHT_TOP, high);
     if let Some((place, amount)) = told {
-        let at = bar.left() + bar.width() * ((amount - range.min) / (range.max - range.min)).clamp(0.0, 1.0);
+        let Range { min, max } = heat.range;
+        let at = bar.left() + bar.width() * ((amount - min) / (max - min)).clamp(0.0, 1.0);
         ui.painter().vline(at, bar.y_range(), Stroke::new(theme::RAY_HALO, palette.background));
         ui.painter().vline(at, bar.y_range(), Stroke::new(1.0, palette.text));
         let middle = bar.center_bottom() + vec2(0.0, theme::GRID * 0.5);

@@ -72,6 +72,7 @@ pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
 
 /// Esc ends the innermost of what is going on.
 fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
+    let building = state.pane_in_building().map(|(which, _)| which);
     let innermost = [
         (state.palette, Command::Palette(false)),
         (state.help, Command::Help(false)),
@@ -88,7 +89,8 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.brute.marking, Command::MarkRectangle(false)),
         (state.brute.running.is_some(), Command::CancelBrute),
         (state.ray_list.reading.is_some() || state.ray_list.tracing.is_some(), Command::CancelRays),
-        (state.beside.building.is_some(), Command::PutBeside(None)),
+        (state.panes.tuned.is_some(), Command::TunePane(None)),
+        (building.is_some(), Command::ClosePane(building.unwrap_or_default())),
         (state.checks.checking.is_some(), Command::CancelCheck),
         (state.errors.making.is_some(), Command::CancelReference),
         (state.tradeoffs.running.is_some(), Command::CancelTradeoffs),

@@ -24,6 +24,7 @@ pub mod needs;
 pub mod node;
 pub mod overlay;
 pub mod palette;
+pub mod panes;
 pub mod path;
 pub mod prediction;
 pub mod ray;

@@ -56,7 +56,7 @@ fn doing(state: &State) -> Option<(String, Option<f32>)> {
     if let Some(building) = &state.building {
         return of(&format!("Building {}", building.key.entry.name), &building.job.progress);
     }
-    if let Some(building) = &state.beside.building {
+    if let Some((_, building)) = state.pane_in_building() {
         return of(&format!("Building {} beside", building.key.entry.name), &building.job.progress);
     }
     if let Some(progress) = state.ray_list.progress() {

@@ -3,8 +3,8 @@
 use eframe::egui::{Button, CollapsingHeader, ComboBox, DragValue, ProgressBar, Ui};
 
 use super::{Commands, heading};
-use crate::accel::params::{Kind, Param, Value};
-use crate::accel::registry;
+use crate::accel::params::{Kind, Param, ParamValues, Value};
+use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
 use crate::viewer::command::Command;
 use crate::viewer::state::State;
@@ -14,8 +14,13 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     heading(ui, "Structure");
     ui.add_enabled_ui(!state.is_measuring(), |ui| {
         choice(ui, state, commands);
-        test(ui, state, commands);
-        parameters(ui, state, commands);
+        let entry = state.settings.entry();
+        commands.extend(test(ui, state.settings.test_of(entry)).map(Command::Test));
+        if !entry.params.is_empty() {
+            CollapsingHeader::new("Parameters").id_salt("parameters").show(ui, |ui| {
+                commands.extend(parameters(ui, entry, &state.settings.params_of(entry), "Defaults").map(Command::Params));
+            });
+        }
     });
     if let Some(building) = &state.building {
         let now = building.job.progress.snapshot();
@@ -40,40 +45,33 @@ fn choice(ui: &mut Ui, state: &State, commands: &mut Commands) {
     response.response.accessible_name("Structure").on_hover_text(chosen.help);
 }
 
-fn test(ui: &mut Ui, state: &State, commands: &mut Commands) {
+/// The triangle tests; the one that was chosen, if one was.
+pub fn test(ui: &mut Ui, now: TestKind) -> Option<TestKind> {
+    let mut chosen = None;
     ui.horizontal_wrapped(|ui| {
         // The others are shown only while one of them is chosen, by a case of the stability lab.
-        let test = state.settings.test_of(state.settings.entry());
-        let other = TestKind::OTHERS.into_iter().filter(|kind| *kind == test);
+        let other = TestKind::OTHERS.into_iter().filter(|kind| *kind == now);
         for kind in TestKind::ALL.into_iter().chain(other) {
-            if ui.radio(test == kind, kind.name()).on_hover_text(kind.help()).clicked() {
-                commands.push(Command::Test(kind));
+            if ui.radio(now == kind, kind.name()).on_hover_text(kind.help()).clicked() {
+                chosen = Some(kind);
             }
         }
     });
+    chosen
 }
 
-fn parameters(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    let entry = state.settings.entry();
-    if entry.params.is_empty() {
-        return;
+/// The parameters of a structure; others, if one was changed. `defaults` is the name of the button that brings all back.
+pub fn parameters(ui: &mut Ui, entry: &Entry, before: &ParamValues, defaults: &str) -> Option<ParamValues> {
+    let changed = *before != entry.defaults();
+    let button = ui.add_enabled(changed, Button::new("Defaults")).accessible_name(defaults);
+    let bring_back = button.on_hover_text("Bring back every parameter of this structure.").clicked();
+    let mut values = before.clone();
+    let mut settled = false;
+    for (param, value) in values.iter_mut() {
+        settled |= parameter(ui, param, value);
     }
-    CollapsingHeader::new("Parameters").id_salt("parameters").show(ui, |ui| {
-        let before = state.settings.params_of(entry);
-        let changed = before != entry.defaults();
-        let defaults = ui.add_enabled(changed, Button::new("Defaults"));
-        if defaults.on_hover_text("Bring back every parameter of this structure.").clicked() {
-            commands.push(Command::Params(entry.defaults()));
-        }
-        let mut values = before.clone();
-        let mut settled = false;
-        for (param, value) in values.iter_mut() {
-            settled |= parameter(ui, param, value);
-        }
-        if settled && values != before {
-            commands.push(Command::Params(values));
-        }
-    });
+    let values = if bring_back { entry.defaults() } else { values };
+    ((bring_back || settled) && values != *before).then_some(values)
 }
 
 /// One parameter; true when its value is to be used. While a number is dragged it lives in the

@@ -9,6 +9,7 @@ use crate::geometry::Axis;
 use crate::render::sampler::SamplerKind;
 use crate::render::{Curve, HeatRays, Mode};
 use crate::viewer::command::Command;
+use crate::viewer::panes::{Arrange, LETTERS, PaneChoice};
 use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
@@ -25,9 +26,6 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             light(ui, state, commands);
         }
         depth(ui, state, commands);
-        if state.settings.workspace == Workspace::Compare && state.settings.mode != Mode::Path && !state.tiles.shown {
-            beside(ui, state, commands);
-        }
     };
     if ui.available_width() >= theme::ONE_ROW {
         ui.horizontal(|ui| {
@@ -38,6 +36,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         ui.horizontal(|ui| structure(ui, state, commands));
         ui.add_space(theme::GRID);
         ui.horizontal(|ui| look(ui, commands));
+    }
+    if state.settings.workspace == Workspace::Compare && state.settings.mode != Mode::Path && !state.tiles.shown {
+        ui.add_space(theme::GRID);
+        ui.horizontal(|ui| compared(ui, state, commands));
     }
 }
 
@@ -123,30 +125,70 @@ fn light(ui: &mut Ui, state: &State, commands: &mut Commands) {
     combo.response.accessible_name("Sampler").on_hover_text("The numbers that samples are made of. All structures get the same.");
 }
 
-/// Which structure traces the right part of a split picture.
-fn beside(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    let chosen = state.beside.chosen;
+/// What the picture is compared with, and how.
+fn compared(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    second(ui, state, commands);
+    if !state.is_comparing() {
+        return;
+    }
+    let panes = &state.settings.panes;
+    let combo = ComboBox::from_id_salt("arrange").width(20.0 * theme::GRID).selected_text(panes.arrange.label());
+    let combo = combo.show_ui(ui, |ui| {
+        for arrange in Arrange::ALL {
+            if ui.selectable_label(arrange == panes.arrange, arrange.label()).on_hover_text(arrange.help()).clicked() {
+                commands.push(Command::Arrange(arrange));
+            }
+        }
+    });
+    combo.response.accessible_name("Arrangement").on_hover_text(panes.arrange.help());
+    let next = panes.others.len();
+    if next + 1 < panes.arrange.most() {
+        let letter = LETTERS[next + 1];
+        let combo = ComboBox::from_id_salt("add").width(16.0 * theme::GRID).height(theme::LONG_MENU);
+        let combo = combo.selected_text(format!("Add {letter}")).show_ui(ui, |ui| {
+            for entry in registry::ALL {
+                if ui.selectable_label(false, format!("{letter}: {}", entry.name)).on_hover_text(entry.help).clicked() {
+                    commands.push(Command::PutPane(next, PaneChoice::of(entry, &state.settings)));
+                }
+            }
+        });
+        combo.response.accessible_name("One more structure").on_hover_text("Compare with one more structure.");
+    }
+    if state.shares_ranges() {
+        let help = "Find the range that the colours of these pictures share anew, from what they show now.";
+        if ui.button("Auto-fit").on_hover_text(help).clicked() {
+            commands.push(Command::FitRange);
+        }
+    }
+    if panes.arrange == Arrange::Divider {
+        for (which, at) in panes.places().into_iter().enumerate() {
+            let mut percent = 100.0 * at;
+            let field = DragValue::new(&mut percent).range(0.0..=100.0).fixed_decimals(0).suffix(" %");
+            let field = ui.add(field).accessible_name(format!("Place of divider {}", which + 1));
+            if field.on_hover_text("Where the next strip begins.").changed() {
+                commands.push(Command::Divider(which, percent / 100.0));
+            }
+        }
+    }
+}
+
+/// The structure beside the shown one.
+fn second(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let chosen = state.settings.panes.others.first().map(PaneChoice::entry);
     let combo = ComboBox::from_id_salt("beside").width(26.0 * theme::GRID).height(theme::LONG_MENU);
     let name = |entry: &Entry| format!("and {}", entry.name);
     let combo = combo.selected_text(chosen.map_or("No second".to_owned(), name)).show_ui(ui, |ui| {
         if ui.selectable_label(chosen.is_none(), "No second").clicked() {
             commands.push(Command::PutBeside(None));
         }
-        for entry in registry::ALL.iter().filter(|entry| entry.id != state.settings.entry().id) {
+        for entry in registry::ALL {
             if ui.selectable_label(chosen.is_some_and(|chosen| chosen.id == entry.id), name(entry)).clicked() {
                 commands.push(Command::PutBeside(Some(entry.id)));
             }
         }
     });
-    let help = "Split the picture: the right part is traced through this structure, the same view in the same colours.";
+    let help = "Compare with this structure: the same view in the same colours.";
     combo.response.accessible_name("Second structure").on_hover_text(help);
-    if state.is_split() {
-        let mut percent = 100.0 * state.beside.divider;
-        let field = DragValue::new(&mut percent).range(0.0..=100.0).fixed_decimals(0).suffix(" %");
-        if ui.add(field).accessible_name("Place of the divider").on_hover_text("Where the right part begins.").changed() {
-            commands.push(Command::Divider(percent / 100.0));
-        }
-    }
 }
 
 /// A grid has no depth: its cells are looked at in layers.

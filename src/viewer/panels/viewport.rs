@@ -2,27 +2,29 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo};
 use glam::Vec2;
 
-use super::{Commands, captions, marking, split};
+use super::split::{Place, self};
+use super::{Commands, captions, marking, panes};
 use crate::scene::Camera;
 use crate::viewer::command::Command;
 use crate::viewer::gpu::{self, Base, DrawList, Raster, View};
 use crate::viewer::navigation;
+use crate::viewer::panes::{Arrange, MOST};
 use crate::viewer::rays_over;
 use crate::viewer::settings::{Navigation, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
-/// The names of the viewport among viewports, and of the second part of a split one.
-const PANES: [gpu::PaneId; 2] = [0, 1];
+/// The names of the views among viewports, that of the shown structure first.
+const PANES: [gpu::PaneId; MOST] = [0, 1, 2, 3];
 /// What an arrow key turns, in points of dragging.
 const KEY_STEP: f32 = 24.0;
 /// What a key zooms, in points of the wheel.
 const KEY_ZOOM: f32 = 60.0;
 
-/// Draws the view; returns its size in pixels.
+/// Draws the view, or compared views; returns the size in pixels that each of them has.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "3D viewport"));
@@ -32,38 +34,54 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         response.request_focus();
     }
     let pixels_per_point = ui.ctx().pixels_per_point();
-    let size_px = gpu::size_px(rect, pixels_per_point);
-    paint(ui, rect, state, size_px, pixels_per_point);
+    let compared = Some(&state.settings.panes).filter(|_| state.is_comparing());
+    let places = split::places(rect, compared, pixels_per_point);
+    let view = places[0].view;
+    let size_px = gpu::size_px(view, pixels_per_point);
+    paint(ui, rect, &places, state, (size_px, pixels_per_point));
     if response.has_focus() {
         let stroke = egui::Stroke::new(1.0, Palette::in_ui(ui).accent_text);
         ui.painter().rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Inside);
     }
-    captions::show(ui, rect, response.hover_pos(), state);
-    split::show(ui, rect, state, commands);
+    if compared.is_none() {
+        captions::show(ui, view, response.hover_pos(), state);
+    } else {
+        let mut over = ui.new_child(UiBuilder::new().max_rect(view));
+        over.shrink_clip_rect(view); // they belong to one of several views
+        captions::show(&over, view, None, state);
+        split::dividers(ui, &places, state, commands);
+        panes::show(ui, &places, state, commands);
+    }
+    // All views are seen by one camera: what is under the pointer in one of them is so in each.
+    let under = |at: Pos2| places.iter().find(|place| place.seen.contains(at)).map(|place| place.view);
     if matches!(state.settings.workspace, Workspace::View | Workspace::Ray) {
-        marking::show(ui, rect, state);
+        marking::show(ui, view, state);
     }
     if state.brute.marking {
-        marking::hands(ui, &response, rect, size_px, commands);
+        marking::hands(ui, &response, view, size_px, commands);
     } else {
         marking::forget(ui, &response);
-        commands.extend(clicked(&response, rect, state, pixels_per_point));
+        if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked())
+            && let Some(view) = under(at)
+        {
+            commands.push(clicked(in_picture(view, at), state, pixels_per_point));
+        }
     }
-    if let Some(camera) = hands(ui, &response, rect, state) {
+    let view = response.hover_pos().and_then(under).unwrap_or(view);
+    if let Some(camera) = hands(ui, &response, view, state) {
         commands.push(Command::Camera(camera));
     }
     size_px
 }
 
 /// What a click asks for: what is there, or why it differs where that is marked.
-fn clicked(response: &Response, rect: Rect, state: &State, pixels_per_point: f32) -> Option<Command> {
-    let at = in_picture(rect, response.interact_pointer_pos().filter(|_| response.clicked())?);
+fn clicked(at: Vec2, state: &State, pixels_per_point: f32) -> Command {
     let marked = state.brute.near(at, theme::MARK * pixels_per_point);
     let marked = marked.filter(|_| state.can_compare_with_brute_force());
-    Some(marked.map_or(Command::Pick(at), Command::FollowUnlike))
+    marked.map_or(Command::Pick(at), Command::FollowUnlike)
 }
 
-fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point: f32) {
+fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_per_point): ([u32; 2], f32)) {
     let palette = Palette::in_ui(ui);
     ui.painter().rect_filled(rect, 0.0, palette.background);
     let Some(model) = &state.model else { return };
@@ -91,20 +109,35 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
         overlay,
         hidden_lines: state.settings.overlay.hidden_lines,
     };
-    match state.beside.picture.as_ref().filter(|_| state.is_split()) {
-        Some(picture) => {
-            let second = DrawList { base: Base::Picture(Arc::clone(picture)), overlay: None, ..list.clone() };
-            let [left, right] = split::halves(rect, state.beside.divider);
-            gpu::paint(&ui.painter_at(left), rect, PANES[0], list);
-            gpu::paint(&ui.painter_at(right), rect, PANES[1], second);
-        }
-        None => gpu::paint(ui.painter(), rect, PANES[0], list),
+    let Place { view: rect, .. } = places[0];
+    // Strips that have no picture yet show the first.
+    let seen = if state.settings.panes.arrange == Arrange::Divider { rect } else { places[0].seen };
+    gpu::paint(&ui.painter_at(seen), rect, PANES[0], list.clone());
+    if state.is_comparing() {
+        others(ui, places, state, &list);
     }
     let marks = rays_over::marks(state);
     rays_over::paint(&ui.painter_at(rect), rect, &marks, &view, model.geometry.space(), palette);
     let (there, all) = model.raster.progress();
     if state.picture.is_none() && there < all {
         ui.ctx().request_repaint();
+    }
+}
+
+/// Draws the pictures of other structures, each with its own boxes.
+fn others(ui: &Ui, places: &[Place], state: &State, first: &DrawList) {
+    let Some(model) = &state.model else { return };
+    let aspect = first.size_px[0] as f32 / first.size_px[1] as f32;
+    let panes = state.panes.all.iter().zip(state.settings.panes.on_screen());
+    for (((pane, choice), place), id) in panes.zip(&places[1..]).zip(&PANES[1..]) {
+        let Some(picture) = pane.on_screen(choice.differs(state.settings.mode)) else { continue };
+        let list = DrawList {
+            view: View::new(&picture.camera, model.geometry.space(), aspect).within(first.view.section),
+            base: Base::Picture(Arc::clone(picture)),
+            overlay: pane.overlay.clone(),
+            ..first.clone()
+        };
+        gpu::paint(&ui.painter_at(place.seen), place.view, *id, list);
     }
 }
 

@@ -42,7 +42,7 @@ impl State {
         let Some(Bookmark { camera, choices, selected, .. }) = self.bookmarks.get(at).cloned() else { return };
         self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
         self.look(camera, Kind::Single);
-        self.restore(Some(choices));
+        self.restore(Some(choices.beside(&self.settings)));
         self.await_cell(&selected, None);
     }
 }

@@ -85,7 +85,7 @@ impl State {
         self.brute = Brute::default();
         self.close_rays();
         self.awaited = None;
-        self.forget_beside();
+        self.forget_panes();
         self.bring_back();
         if self.checks.selected.is_some_and(|cell| model::case_name(cell.case) == name) {
             self.checks.mark_case(&model.rays);

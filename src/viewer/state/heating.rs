@@ -2,7 +2,7 @@
 
 use super::State;
 use crate::accel::registry::Family;
-use crate::render::{HeatRays, Mode, Picture, Range};
+use crate::render::{HeatRays, Mode, Range};
 use glam::Vec2;
 
 /// The least that the ends of a range are apart.
@@ -42,12 +42,6 @@ impl State {
         let (camera, at) = self.clicked?;
         let picture = self.on_screen().filter(|picture| picture.camera == camera)?;
         picture.amount_at(at)
-    }
-
-    /// The picture that stands at a place across the view, from 0 to 1: in a split one that of its part.
-    pub fn picture_at(&self, across: f32) -> Option<&Picture> {
-        let beside = self.beside.picture.as_ref().filter(|_| self.is_split() && across >= self.beside.divider);
-        beside.or(self.on_screen()).map(|picture| &**picture)
     }
 
     /// Why the shown structure has no stack, if it has none.

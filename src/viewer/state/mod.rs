@@ -1,7 +1,6 @@
 //! What the window knows, and how commands change it; `finished` is what finished jobs change, and
 //! `refresh` what is asked for anew when the view changes. No drawing here.
 
-mod besides;
 mod bookmarks;
 mod brute_force;
 mod causes;
@@ -12,11 +11,13 @@ mod exploring;
 mod filming;
 mod exporting;
 mod finished;
+mod fitting;
 mod following;
 mod heating;
 mod growing;
 mod keeping;
 mod listing;
+mod panes;
 mod refresh;
 mod saving;
 mod sectioning;
@@ -28,6 +29,7 @@ mod visiting;
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
 pub use heating::LEAST_SPAN;
+pub use panes::{Pane, Panes};
 use saving::{Awaited, Saving};
 use visiting::Visiting;
 
@@ -36,7 +38,6 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-use super::beside::{Beside, Pauses};
 use super::brute::Brute;
 use super::checks::Checks;
 use super::command::Command;
@@ -51,6 +52,7 @@ use super::kept::{Built, Kept, Key};
 use super::model::{Instances, Model};
 use super::navigation;
 use super::overlay::{Collected, Wanted};
+use super::panes::Pauses;
 use super::pick::Picked;
 use super::ray_list::RayList;
 use super::rays::Rays;
@@ -125,10 +127,8 @@ pub struct State {
     pub filming: Filming,
     /// Why rays are slow in the shown structure.
     pub causes: Causes,
-    /// The second structure of a split picture.
-    pub beside: Beside,
-    /// What its renderer was last asked for.
-    requested_beside: Option<Asked>,
+    /// Pictures beside that of the shown structure.
+    pub panes: Panes,
     /// Threads that trace.
     trace_pool: Pool,
     /// The ray of the Ray workspace.
@@ -296,8 +296,7 @@ impl State {
             tree: Tree::default(),
             filming: Filming::default(),
             causes: Causes::default(),
-            beside: Beside::default(),
-            requested_beside: None,
+            panes: Panes::default(),
             trace_pool: pool.clone(),
             rays: Rays::default(),
             brute: Brute::default(),
@@ -409,6 +408,7 @@ impl State {
             || self.exports.is_writing()
             || self.awaited.is_some()
             || self.is_touring()
+            || self.panes_are_busy()
             || drawing
     }
 
@@ -552,7 +552,12 @@ impl State {
             Command::Tour(step) => self.go_on_tour(step),
             Command::Present(present) => self.presenting = present,
             Command::PutBeside(id) => self.put_beside(id),
-            Command::Divider(at) => self.beside.divider = at.clamp(0.0, 1.0),
+            Command::PutPane(which, choice) => self.put_pane(which, choice),
+            Command::ClosePane(which) => self.close_pane(which),
+            Command::TunePane(which) => self.panes.tuned = which,
+            Command::Arrange(arrange) => self.settings.panes.arrange = arrange,
+            Command::Divider(which, at) => self.settings.panes.move_divider(which, at),
+            Command::FitRange => self.fit_anew(),
             Command::SaveWorkspace => self.ask_where_to_save(),
             Command::Export(export) => self.ask_where_to_export(export),
             Command::CancelReport => self.exports.report = None,
@@ -762,7 +767,7 @@ impl State {
         self.advance_check();
         self.follow_viewport();
         self.refresh_picture();
-        self.advance_beside();
+        self.advance_panes();
         self.advance_errors();
         self.advance_tradeoffs();
         self.advance_tiles();

@@ -40,7 +40,7 @@ impl State {
             mode,
             // Of other pictures it changes nothing.
             heat_rays: if mode.is_heat() { self.settings.heat_rays } else { HeatRays::default() },
-            range: self.range,
+            range: self.range.or_else(|| self.range_of(mode)),
             size_px: self.size_px,
             max_samples,
             textured: self.textures,
@@ -54,7 +54,7 @@ impl State {
             let whole = render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks));
             let job = render::Job { sampling, heat_rays: asked.heat_rays, section: asked.section, ..whole };
             let keep = asked.keeps.then(|| self.shared.budget.clone());
-            let request = Request { job, width, height, max_samples, range: self.range, tone: asked.tone, keep };
+            let request = Request { job, width, height, max_samples, range: asked.range, tone: asked.tone, keep };
             let number = self.renderer.request(request);
             self.follow_errors(&asked);
             self.requested = Some(Asked { number, ..asked });

@@ -72,7 +72,6 @@ impl State {
         file.tried = self.tree.tried.filter(|_| !file.selected.is_empty()).map(|(axis, place)| (axis.index(), place));
         file.beside = self.rays.beside.iter().map(|id| (*id).to_owned()).collect();
         file.bookmarks.clone_from(&self.bookmarks);
-        (file.split, file.divider) = (self.beside.chosen.map(|entry| entry.id.to_owned()), self.beside.divider);
         Some(file)
     }
 
@@ -142,8 +141,7 @@ impl State {
         self.await_cell(&file.selected, tried.filter(|(_, place)| place.is_finite()));
         self.rays.beside = file.beside.iter().filter_map(|id| registry::find(id)).map(|entry| entry.id).take(MOST - 1).collect();
         self.rays.beside.dedup();
-        self.beside.chosen = file.split.and_then(|id| registry::find(&id));
-        self.beside.divider = file.divider.clamp(0.0, 1.0);
+        self.settings.panes.mend();
         self.rays.kind = file.ray_kind.parse().unwrap_or(self.rays.kind);
         self.rays.asked = file.ray.and_then(|text| from_text(&text).ok());
         self.rays.awaited = file.step.filter(|_| self.rays.asked.is_some());
