@@ -62,7 +62,10 @@ pub struct Args {
     /// Begin in the Structure workspace; with --screenshot, select that cell first: dearest, deepest, fullest or overlap.
     #[arg(long, value_name = "CELL", conflicts_with_all = ["measure", "check", "errors"])]
     pub select: Option<Rank>,
-    /// With that, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
+    /// With that, show the triangles of the cell alone.
+    #[arg(long, requires_all = ["select", "screenshot"])]
+    pub isolate: bool,
+    /// With --select, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
     #[arg(long, value_name = "AXIS,PLACE", value_parser = plane, requires = "select")]
     pub try_plane: Option<(Axis, f64)>,
     /// Begin in the Ray workspace; with --screenshot, follow the ray of that place first: -1,-1 is the lower left corner of the
@@ -108,6 +111,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         check: args.check,
         errors: args.errors.and_then(|plot| plot.parse().ok()),
         select: args.select,
+        isolate: args.isolate,
         try_plane: args.try_plane,
         follow: args.follow,
         beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),

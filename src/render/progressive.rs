@@ -50,8 +50,8 @@ impl Request {
     fn has_samples_of(&self, other: &Self) -> bool {
         let (a, b) = (&self.job, &other.job);
         let same = Arc::ptr_eq(&a.scene, &b.scene) && Arc::ptr_eq(&a.accel, &b.accel) && Arc::ptr_eq(&a.looks, &b.looks);
-        let how =
-            (a.camera, a.mode, a.sampling, a.transport, a.section) == (b.camera, b.mode, b.sampling, b.transport, b.section);
+        let how = (a.camera, a.mode, a.sampling, a.transport) == (b.camera, b.mode, b.sampling, b.transport);
+        let how = how && (a.section, &a.visible) == (b.section, &b.visible);
         same && how && (self.width, self.height) == (other.width, other.height) && self.keep.is_some() == other.keep.is_some()
     }
 }

@@ -11,6 +11,7 @@ use super::state::State;
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::accel::registry;
+use crate::accel::visibility::Change;
 use crate::geometry::Axis;
 use crate::render::Mode;
 use crate::render::sampler::SamplerKind;
@@ -71,6 +72,12 @@ pub const SAME_SIZE: KeyboardShortcut = with(Modifiers::COMMAND, Key::Num0);
 pub const PALETTE: KeyboardShortcut = with(Modifiers::COMMAND, Key::P);
 /// For an audience.
 pub const PRESENT: KeyboardShortcut = with(Modifiers::NONE, Key::F10);
+/// Shows the triangles of the selected cell alone.
+pub const ISOLATE: KeyboardShortcut = with(Modifiers::NONE, Key::I);
+/// Hides them.
+pub const HIDE: KeyboardShortcut = with(Modifiers::NONE, Key::H);
+/// Shows all triangles again.
+pub const SHOW_ALL: KeyboardShortcut = with(Modifiers::SHIFT, Key::H);
 /// Keeps the view.
 pub const BOOKMARK: KeyboardShortcut = with(Modifiers::COMMAND, Key::D);
 /// The page of keys, on keyboards where it needs Shift and others.
@@ -145,6 +152,7 @@ pub fn all(state: &State) -> Vec<Action> {
     list.group = "View";
     view(&mut list, state);
     section(&mut list, state);
+    triangles(&mut list, state);
     list.group = "Boxes";
     boxes(&mut list, state);
     list.group = "Structure";
@@ -212,6 +220,14 @@ fn section(list: &mut List, state: &State) {
         let moved = SectionSettings { at: Section { place: (now.at.place + by).clamp(0.0, 1.0), ..now.at }, ..now };
         list.add(name, Command::Section(moved)).if_possible(open && now.on && moved != now);
     }
+}
+
+fn triangles(list: &mut List, state: &State) {
+    let selected = state.picked.as_ref().is_some_and(|picked| picked.selected().is_some());
+    let isolate = Command::Hide(Change::Isolate);
+    list.add("Isolate the triangles of the selected cell", isolate).key(ISOLATE).if_possible(selected);
+    list.add("Hide the triangles of the selected cell", Command::Hide(Change::Hide)).key(HIDE).if_possible(selected);
+    list.add("Show all triangles", Command::ShowAll).key(SHOW_ALL).if_possible(state.visible().is_some());
 }
 
 fn boxes(list: &mut List, state: &State) {

@@ -1,10 +1,11 @@
 //! What the window knows of comparing a part of the picture with brute force.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::kept::{Built, Key};
 use super::workers::{Shared, build_now};
-use crate::accel::{BuildCx, BuildError};
+use crate::accel::{BuildCx, BuildError, Visibility};
 use crate::geometry::HalfSpace;
 use crate::job::Job;
 use crate::lab::{BruteCheck, PixelRect, UnlikePixel, check_by_brute_force};
@@ -56,6 +57,8 @@ pub struct Of {
     pub camera: Camera,
     /// What of the world is left.
     pub section: Option<HalfSpace>,
+    /// Which triangles are seen.
+    pub visible: Option<Arc<Visibility>>,
     /// Columns and rows of the view.
     pub size_px: [u32; 2],
 }
@@ -115,7 +118,7 @@ mod tests {
         let entry = &registry::ALL[0];
         let key = Key { entry, params: entry.defaults(), test: TestKind::default() };
         let camera = Camera::framing(&crate::geometry::Aabb::EMPTY, Vec3::Z, Vec3::Y, 1.0);
-        let of = Of { key, camera, section: None, size_px: [200, 100] };
+        let of = Of { key, camera, section: None, visible: None, size_px: [200, 100] };
         let found = BruteCheck { examples: vec![pixel(99, 49), pixel(104, 49)], ..BruteCheck::default() };
         let brute = Brute { of: Some((of, PixelRect::whole([200, 100]))), found: Some(found), ..Brute::default() };
         assert_eq!(brute.near(Vec2::ZERO, 8.0), Some(0));

@@ -6,6 +6,7 @@ use super::model::Instances;
 use super::settings::{Navigation, OverlaySettings, SectionSettings, ThemeChoice, Workspace};
 use super::tradeoffs::{Goodness, Miss, Plot};
 use crate::accel::params::ParamValues;
+use crate::accel::visibility::Change;
 use crate::geometry::Axis;
 use crate::geometry::tri::TestKind;
 use crate::lab::{PixelRect, RayKind};
@@ -41,6 +42,12 @@ pub enum Command {
     Overlay(OverlaySettings),
     /// Cut the model open elsewhere, or not at all.
     Section(SectionSettings),
+    /// Show the triangles of the selected cell alone, or hide them.
+    Hide(Change),
+    /// Stop that.
+    CancelHide,
+    /// Show all triangles again.
+    ShowAll,
     /// Look from elsewhere.
     Camera(Camera),
     /// Look from where the camera was before its last move.

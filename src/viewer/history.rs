@@ -1,11 +1,13 @@
 //! What can be taken back: the camera's moves, and the choices of structure, parameters, selection
 //! and visibility. The two histories know nothing of each other (Alt+Left/Right, Ctrl+Z).
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::command::Command;
 use super::pick::Picked;
 use super::settings::{OverlaySettings, SectionSettings, Settings};
+use crate::accel::Visibility;
 use crate::geometry::tri::TestKind;
 
 /// The most steps that are remembered.
@@ -93,6 +95,8 @@ pub struct Choices {
     overlay: OverlaySettings,
     #[serde(default)]
     section: SectionSettings,
+    #[serde(skip)]
+    visible: Option<Arc<Visibility>>,
     /// What is selected.
     #[serde(skip)]
     pub picked: Option<Picked>,
@@ -107,6 +111,7 @@ impl Choices {
             test: settings.test,
             overlay: settings.overlay,
             section: settings.section,
+            visible: settings.visible.clone(),
             picked: picked.cloned(),
         }
     }
@@ -118,12 +123,13 @@ impl Choices {
         settings.test = self.test;
         settings.overlay = self.overlay;
         settings.section = self.section;
+        settings.visible.clone_from(&self.visible);
     }
 
     /// The kind of change that a command makes to them, if it makes one at once.
     pub const fn changed_by(command: &Command) -> Option<Kind> {
         match command {
-            Command::Structure(_) | Command::Test(_) | Command::OpenCase(_) => Some(Kind::Single),
+            Command::Structure(_) | Command::Test(_) | Command::OpenCase(_) | Command::ShowAll => Some(Kind::Single),
             Command::Params(_) => Some(Kind::Params),
             Command::Overlay(_) => Some(Kind::Overlay),
             Command::Section(_) => Some(Kind::Section),

@@ -42,7 +42,9 @@ pub struct ViewerOptions {
     pub errors: Option<Plot>,
     /// Begin in the Structure workspace; with `screenshot`, select that cell first.
     pub select: Option<Rank>,
-    /// With that, try a plane across an axis of it, at a place from 0 to 1.
+    /// With that, show the triangles of that cell alone.
+    pub isolate: bool,
+    /// With `select`, try a plane across an axis of it, at a place from 0 to 1.
     pub try_plane: Option<(Axis, f64)>,
     /// Begin in the Ray workspace; with `screenshot`, follow the ray of that place first: (-1, -1) is the lower left corner of
     /// the view, (1, 1) the upper right.

@@ -18,6 +18,7 @@ use super::state::State;
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::accel::registry;
+use crate::accel::visibility::Change;
 use crate::geometry::Axis;
 use crate::sys::{folder_of, temporary_in};
 
@@ -31,6 +32,8 @@ pub struct Screenshot {
     errors: Option<(Plot, usize)>,
     /// The cell that is still to be selected, and the plane to be tried in it.
     select: Option<Rank>,
+    /// Its triangles are still to be isolated.
+    isolate: bool,
     try_plane: Option<(Axis, f64)>,
     /// What is still to be done in the Ray workspace.
     follow: Vec<Command>,
@@ -79,6 +82,7 @@ impl Screenshot {
             check: options.check,
             errors: options.errors.map(|plot| (plot, 0)),
             select: options.select,
+            isolate: options.isolate,
             try_plane: options.try_plane,
             follow: follow(options),
             brute: options.brute,
@@ -114,6 +118,7 @@ impl Screenshot {
                 let outline = state.tree.outline.as_ref();
                 commands.extend(self.select.take().and_then(|rank| outline?.greatest(rank)).map(Command::SelectRow));
             }
+            Stage::Settling if settled && std::mem::take(&mut self.isolate) => commands.push(Command::Hide(Change::Isolate)),
             Stage::Settling if settled && self.try_plane.is_some() => {
                 commands.push(Command::TryPlane(self.try_plane.take()));
             }

@@ -1,7 +1,9 @@
 //! What the window remembers from one day to the next.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use crate::accel::Visibility;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
@@ -33,6 +35,9 @@ pub struct Settings {
     pub overlay: OverlaySettings,
     /// Where the model is cut open: as long as it is the same model.
     pub section: SectionSettings,
+    /// Which triangles are hidden: those of the open model, so that they are in no file.
+    #[serde(skip)]
+    pub visible: Option<Arc<Visibility>>,
     /// What stands around the view.
     pub workspace: Workspace,
     /// How nodes are divided is hidden until asked.
@@ -65,6 +70,7 @@ impl Default for Settings {
             sampler: SamplerKind::default(),
             overlay: OverlaySettings::default(),
             section: SectionSettings::default(),
+            visible: None,
             workspace: Workspace::default(),
             hide_outcome: false,
             theme: ThemeChoice::default(),

@@ -82,6 +82,7 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.rays.following.is_some(), Command::CancelFollow),
         (state.brute.marking, Command::MarkRectangle(false)),
         (state.brute.running.is_some(), Command::CancelBrute),
+        (state.hiding.is_some(), Command::CancelHide),
         (state.beside.building.is_some(), Command::PutBeside(None)),
         (state.checks.checking.is_some(), Command::CancelCheck),
         (state.errors.making.is_some(), Command::CancelReference),

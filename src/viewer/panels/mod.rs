@@ -11,6 +11,7 @@ pub mod error_side;
 pub mod errors;
 pub mod findings;
 pub mod help;
+pub mod hiding;
 pub mod long_list;
 pub mod marking;
 pub mod menu;

@@ -73,6 +73,8 @@ fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point
     let camera = state.picture.as_ref().map_or(state.camera, |p| p.camera);
     let base = match state.on_screen() {
         Some(picture) => Base::Picture(Arc::clone(picture)),
+        // The preview would show what is hidden.
+        None if state.visible().is_some() => Base::Nothing,
         None => Base::Raster(Raster {
             mesh: Arc::clone(&model.raster),
             color: palette.preview.to_array(),

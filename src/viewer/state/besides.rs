@@ -80,7 +80,7 @@ impl State {
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&built.accel));
         let sampling = Sampling { kind: wanted.sampler, seed: 0 };
         let whole = render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks));
-        let job = render::Job { sampling, section: wanted.section, ..whole };
+        let job = render::Job { sampling, section: wanted.section, visible: wanted.visible.clone(), ..whole };
         let ([width, height], max_samples, tone) = (wanted.size_px, wanted.max_samples, wanted.tone);
         renderer.request(Request { job, width, height, max_samples, range, tone, keep: None });
         self.requested_beside = Some(wanted);

@@ -31,7 +31,8 @@ impl State {
     /// The present view, as far as it says what is compared.
     fn compared(&self) -> Option<Of> {
         let key = self.shown.as_ref()?.key.clone();
-        Some(Of { key, camera: self.camera, section: self.section(), size_px: self.size_px })
+        let (section, visible) = (self.section(), self.visible().cloned());
+        Some(Of { key, camera: self.camera, section, visible, size_px: self.size_px })
     }
 
     /// Compares a rectangle of the view, or all of it, with brute force.
@@ -46,7 +47,7 @@ impl State {
         let there = self.kept.take_up(&key).ok_or(key);
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
         let whole = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
-        let view = render::Job { section: self.section(), ..whole };
+        let view = render::Job { section: self.section(), visible: self.visible().cloned(), ..whole };
         let rect = rect.unwrap_or_else(|| PixelRect::whole(self.size_px));
         let job = brute::compare(&self.shared, there, view, self.size_px, rect);
         self.brute.clear();

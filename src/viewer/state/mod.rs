@@ -11,6 +11,7 @@ mod erring;
 mod exploring;
 mod finished;
 mod following;
+mod hiding;
 mod keeping;
 mod refresh;
 mod saving;
@@ -19,6 +20,7 @@ mod trading;
 
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
+use hiding::Hiding;
 use saving::Saving;
 
 use std::path::PathBuf;
@@ -49,7 +51,7 @@ use super::workers::{
     self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Needing, Picking, Plan, Predicting, Shared,
 };
 use super::workspace_file::WorkspaceFile;
-use crate::accel::{CellId, cell};
+use crate::accel::{CellId, Visibility, cell};
 use crate::geometry::HalfSpace;
 use crate::geometry::tri::TestKind;
 use crate::lab::SahCurves;
@@ -111,6 +113,8 @@ pub struct State {
     pub rays: Rays,
     /// The picture compared with brute force.
     pub brute: Brute,
+    /// Triangles to be hidden, on their way.
+    pub hiding: Option<Hiding>,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -205,6 +209,8 @@ struct Asked {
     camera: Camera,
     /// What of the world is left.
     section: Option<HalfSpace>,
+    /// Which triangles are seen.
+    visible: Option<Arc<Visibility>>,
     mode: Mode,
     range: Option<Range>,
     size_px: [u32; 2],
@@ -264,6 +270,7 @@ impl State {
             trace_pool: pool.clone(),
             rays: Rays::default(),
             brute: Brute::default(),
+            hiding: None,
             picked: None,
             error: None,
             answer: None,
@@ -358,6 +365,7 @@ impl State {
             || self.is_exploring()
             || self.rays.following.is_some()
             || self.brute.running.is_some()
+            || self.hiding.is_some()
             || self.saving.is_busy()
             || self.awaited.is_some()
             || drawing
@@ -401,6 +409,9 @@ impl State {
                 self.settings.overlay = overlay;
             }
             Command::Section(section) => self.cut(section),
+            Command::Hide(change) => self.hide_triangles(change),
+            Command::CancelHide => self.hiding = None,
+            Command::ShowAll => (self.settings.visible, self.hiding) = (None, None),
             Command::Camera(camera) => self.look(camera, Kind::Hand),
             Command::CameraBack => self.camera = self.cameras.back(self.camera).unwrap_or(self.camera),
             Command::CameraForward => self.camera = self.cameras.forward(self.camera).unwrap_or(self.camera),
@@ -507,7 +518,8 @@ impl State {
             self.follow(ray);
         }
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), Arc::clone(&shown.accel), ray).ok();
+        let through = (Arc::clone(&shown.accel), self.visible().cloned());
+        self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), through, ray).ok();
     }
 
     /// Moves the camera; it can be moved back.
@@ -519,7 +531,7 @@ impl State {
     /// Brings choices back that were left.
     fn restore(&mut self, choices: Option<Choices>) {
         let Some(choices) = choices else { return };
-        (self.picking, self.tree.selecting) = (None, None);
+        (self.picking, self.tree.selecting, self.hiding) = (None, None, None);
         choices.restore(&mut self.settings);
         self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
         self.choose();
@@ -679,6 +691,7 @@ impl State {
         self.advance_outline();
         self.advance_following();
         self.advance_brute_force();
+        self.advance_hiding();
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();

@@ -37,6 +37,7 @@ impl State {
             model: self.models,
             camera: self.camera,
             section: self.section(),
+            visible: self.visible().cloned(),
             mode,
             range: self.range,
             size_px: self.size_px,
@@ -50,7 +51,7 @@ impl State {
             let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
             let sampling = Sampling { kind: asked.sampler, seed: 0 };
             let whole = render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks));
-            let job = render::Job { sampling, section: asked.section, ..whole };
+            let job = render::Job { sampling, section: asked.section, visible: asked.visible.clone(), ..whole };
             let keep = asked.keeps.then(|| self.shared.budget.clone());
             let request = Request { job, width, height, max_samples, range: self.range, tone: asked.tone, keep };
             let number = self.renderer.request(request);
