@@ -223,7 +223,7 @@ fn section(list: &mut List, state: &State) {
 }
 
 fn triangles(list: &mut List, state: &State) {
-    let selected = state.picked.as_ref().is_some_and(|picked| picked.selected().is_some());
+    let selected = state.picked.as_ref().is_some_and(|picked| picked.selected().is_some()) && !state.is_measuring();
     let isolate = Command::Hide(Change::Isolate);
     list.add("Isolate the triangles of the selected cell", isolate).key(ISOLATE).if_possible(selected);
     list.add("Hide the triangles of the selected cell", Command::Hide(Change::Hide)).key(HIDE).if_possible(selected);
@@ -293,7 +293,7 @@ fn ray(list: &mut List, state: &State) {
     let compared = state.can_compare_with_brute_force();
     list.add("Mark a rectangle to check with brute force", Command::MarkRectangle(true)).if_possible(compared);
     list.add("Check the whole view with brute force", Command::CheckByBrute(None)).if_possible(compared);
-    let differs = !state.brute.unlike().0.is_empty();
+    let differs = !state.brute.unlike().is_empty();
     list.add("Follow a ray that differs from brute force", Command::FollowUnlike(state.brute.next)).if_possible(differs);
     list.add(if playing { "Pause the ray" } else { "Play the ray" }, Command::Play(!playing)).if_possible(there);
 }

@@ -20,13 +20,14 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if !selected && hidden.is_none() {
         return;
     }
+    let free = selected && !state.is_measuring();
     let written = |key| actions::written(ui.ctx(), key);
     let isolate = format!("Show only the triangles of this cell and those below it. {BUT} ({})", written(&ISOLATE));
     let hide = format!("Hide the triangles of this cell and those below it. {BUT} ({})", written(&HIDE));
     let all = format!("Show all triangles again ({})", written(&SHOW_ALL));
     let ways = [
-        ("Isolate", isolate, selected, Command::Hide(Change::Isolate)),
-        ("Hide", hide, selected, Command::Hide(Change::Hide)),
+        ("Isolate", isolate, free, Command::Hide(Change::Isolate)),
+        ("Hide", hide, free, Command::Hide(Change::Hide)),
         ("Show all", all, hidden.is_some(), Command::ShowAll),
     ];
     ui.horizontal_wrapped(|ui| {

@@ -43,13 +43,13 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
     captions::show(ui, rect, state);
     split::show(ui, rect, state, commands);
     if matches!(state.settings.workspace, Workspace::View | Workspace::Ray) {
-        marking::show(ui, rect, state);
+        marking::show(ui, rect, &state.brute);
     }
     if state.brute.marking {
         marking::hands(ui, &response, rect, size_px, commands);
     } else {
         marking::forget(ui, &response);
-        commands.extend(clicked(&response, rect, state, pixels_per_point));
+        commands.extend(clicked(&response, rect, state));
     }
     if let Some(camera) = hands(ui, &response, rect, state) {
         commands.push(Command::Camera(camera));
@@ -58,11 +58,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
 }
 
 /// What a click asks for: what is there, or why it differs where that is marked.
-fn clicked(response: &Response, rect: Rect, state: &State, pixels_per_point: f32) -> Option<Command> {
-    let at = in_picture(rect, response.interact_pointer_pos().filter(|_| response.clicked())?);
-    let marked = state.brute.near(at, theme::MARK * pixels_per_point);
-    let marked = marked.filter(|_| state.can_compare_with_brute_force());
-    Some(marked.map_or(Command::Pick(at), Command::FollowUnlike))
+fn clicked(response: &Response, rect: Rect, state: &State) -> Option<Command> {
+    let at = response.interact_pointer_pos().filter(|_| response.clicked())?;
+    let marked = marking::near(at, rect, &state.brute).filter(|_| state.can_compare_with_brute_force());
+    Some(marked.map_or(Command::Pick(in_picture(rect, at)), Command::FollowUnlike))
 }
 
 fn paint(ui: &Ui, rect: Rect, state: &State, size_px: [u32; 2], pixels_per_point: f32) {

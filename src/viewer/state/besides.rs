@@ -46,6 +46,7 @@ impl State {
     /// Ends what would disturb a measurement, and keeps both renderers from running.
     pub(super) fn begin_measuring(&mut self) -> Pauses {
         (self.beside.building, self.rays.following) = (None, None);
+        self.hiding = None;
         self.brute.clear();
         if self.tree.outlining.take().is_some() {
             self.tree.of = None; // listed anew afterwards
