@@ -258,7 +258,10 @@ impl Triangles {
     fn others(&self, geometry: &Geometry, cancel: &Cancel) -> Result<Self, Cancelled> {
         let flat = not_in(&self.flat, geometry, cancel)?;
         let mut others = Self { flat, places: HashMap::new() };
-        for place in geometry.placed().map_or(&[][..], Placed::places) {
+        for (i, place) in geometry.placed().map_or(&[][..], Placed::places).iter().enumerate() {
+            if i.is_multiple_of(PER_CHECK) {
+                cancel.check()?;
+            }
             let of_place = match (self.places.get(&place.instance), live_in(geometry.placed(), place.instance)) {
                 (Some(OfPlace::All), _) => continue,
                 (Some(OfPlace::Some(bits)), Some(part)) => OfPlace::Some(not_in(bits, part, cancel)?),

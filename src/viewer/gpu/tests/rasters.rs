@@ -113,7 +113,7 @@ fn what_a_section_cuts_away_is_not_drawn_and_hides_nothing() {
     list.view = list.view.within(Some(HalfSpace { axis: Axis::Z, at: 0.0, side: Side::Below }));
     list.overlay = overlay(vec![boxed([-0.2 * scale, -0.1 * scale, 0.0], [0.2 * scale, -0.1 * scale, 0.0])]);
     list.hidden_lines = false;
-    let image = gpu.shot("section between", &list);
+    let image = gpu.shot("section_between", &list);
     assert!(image.pixels().any(|p| p.0[0] > 170 && p.0[2] < 100), "nothing is before the line any more");
 }
 
