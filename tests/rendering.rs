@@ -173,7 +173,6 @@ fn the_renderer_refines_rests_and_pauses() {
         height: 160,
         max_samples: 3,
         range: None,
-        amounts: false,
         tone: Tone::default(),
         keep: None,
     };
@@ -213,7 +212,7 @@ fn samples_are_kept_when_only_what_becomes_of_them_changes() {
     let budget = Budget::of_mib(64);
     let (job, keep) = (job(&soup(400, 0.3, 7), "bvh", Mode::Path), Some(budget.clone()));
     let request =
-        Request { job, width: 80, height: 60, max_samples: 9, range: None, amounts: false, tone: Tone::default(), keep };
+        Request { job, width: 80, height: 60, max_samples: 9, range: None, tone: Tone::default(), keep };
     let wait = |number: u64| {
         let start = Instant::now();
         loop {
@@ -248,7 +247,7 @@ fn amounts_come_with_the_picture_if_asked_for_and_keep_the_range_that_suits() {
     let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
     let job = job(&soup(400, 0.3, 7), "bvh", Mode::Nodes);
     let plain =
-        Request { job, width: 64, height: 48, max_samples: 1, range: None, amounts: false, tone: Tone::default(), keep: None };
+        Request { job, width: 64, height: 48, max_samples: 1, range: None, tone: Tone::default(), keep: None };
     let wait = |number: u64| {
         let start = Instant::now();
         loop {
@@ -260,12 +259,12 @@ fn amounts_come_with_the_picture_if_asked_for_and_keep_the_range_that_suits() {
         }
     };
     let first = wait(renderer.request(plain.clone()));
-    assert!(first.amounts.is_none() && first.range == first.suits);
+    assert!(first.range == first.suits);
     // Without another sample: the same samples, mapped otherwise.
     let fixed = Range { min: 0.0, max: 1000.0 };
-    let second = wait(renderer.request(Request { amounts: true, range: Some(fixed), ..plain }));
+    let second = wait(renderer.request(Request { range: Some(fixed), ..plain }));
     assert!(second.range == fixed && second.suits == first.suits && second.rgba != first.rgba);
-    let amounts = second.amounts.as_ref().expect("asked for");
+    let amounts = &second.amounts.as_ref().expect("a heat map has them").values;
     assert_eq!(amounts.len(), 64 * 48);
     let most = amounts.iter().copied().fold(0.0, f32::max);
     assert!(most >= first.suits.max - 1.0 && amounts.iter().all(|x| x.is_nan() || x.fract() == 0.0), "{most}");

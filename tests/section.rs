@@ -122,6 +122,7 @@ fn a_section_that_cuts_nothing_away_changes_nothing() {
             assert!(same || mode.is_heat(), "{mode:?}");
         }
         let nothing = HalfSpace { axis: Axis::Y, at: 1e6, side: Side::Above };
-        assert!(film(&Job { section: Some(nothing), ..job.clone() }, 2).means().all(|mean| mean[3] == 0.0), "{mode:?}");
+        let clear = film(&Job { section: Some(nothing), ..job.clone() }, 2).means().all(|mean| mean[3] == 0.0);
+        assert!(clear || mode.is_heat(), "{mode:?}");
     }
 }

@@ -24,6 +24,7 @@ pub mod probe;
 pub mod registry;
 pub mod stats;
 pub mod validate;
+pub mod visibility;
 pub mod volumes;
 mod wide;
 pub mod would_fit;
@@ -33,6 +34,7 @@ pub use cell::{Cell, CellId, CellKind, Cells, Level, MemoryPart, Shape, Split};
 pub use hit::{Accepts, AnyHit, Asked, Closest, Filter, Filtered, Hit, Mode, PrimHit, Query};
 pub use instanced::Instanced;
 pub use probe::{Prune, Step};
+pub use visibility::Visibility;
 
 use std::sync::Arc;
 

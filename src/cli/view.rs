@@ -76,7 +76,10 @@ pub struct Args {
     /// Begin in the Structure workspace; with --screenshot, select that cell first: dearest, deepest, fullest, overlap or emptiest.
     #[arg(long, value_name = "CELL", conflicts_with_all = ["measure", "check", "errors"])]
     pub select: Option<Rank>,
-    /// With that, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
+    /// With that, show the triangles of the cell alone.
+    #[arg(long, requires_all = ["select", "screenshot"])]
+    pub isolate: bool,
+    /// With --select, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
     #[arg(long, value_name = "AXIS,PLACE", value_parser = plane, requires = "select")]
     pub try_plane: Option<(Axis, f64)>,
     /// Begin in the Structure workspace; with --screenshot, make the film of the build first, and go to that part of it, from 0 to 1.
@@ -145,6 +148,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         check: args.check,
         errors: args.errors.and_then(|plot| plot.parse().ok()),
         select: args.select,
+        isolate: args.isolate,
         try_plane: args.try_plane,
         film: args.film,
         follow: args.follow,

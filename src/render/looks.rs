@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::Mode;
 use super::light::{Sources, Surroundings};
+use crate::accel::visibility::{Seen, Visibility};
 use crate::accel::{self, Accel, Filter, Hit, Traced};
 use crate::geometry::Ray;
 use crate::scene::coverage::{Surface, tested_meshes};
@@ -108,20 +109,22 @@ impl Looks {
         !self.tested.is_empty()
     }
 
-    /// Traces rays through a structure; where surfaces are not there hits do not count.
+    /// Traces rays through a structure; where surfaces are not there hits do not count, nor do those on what is hidden.
     pub(super) fn trace(
         &self,
         scene: &Scene,
-        accel: &dyn Accel,
+        (accel, visible): (&dyn Accel, Option<&Visibility>),
         rays: &[Ray],
         mode: accel::Mode,
         hits: &mut [Option<Hit>],
         cancel: &Cancel,
     ) -> Result<Traced, Cancelled> {
-        if self.has_holes() {
-            accel.trace_filtered(rays, mode, &Holes { scene, looks: self }, hits, cancel)
-        } else {
-            accel.trace(rays, mode, hits, cancel)
+        let holes = self.has_holes().then_some(Holes { scene, looks: self });
+        match (holes, visible.map(|visible| visible.filter(accel.geometry()))) {
+            (None, None) => accel.trace(rays, mode, hits, cancel),
+            (Some(holes), None) => accel.trace_filtered(rays, mode, &holes, hits, cancel),
+            (None, Some(seen)) => accel.trace_filtered(rays, mode, &seen, hits, cancel),
+            (Some(holes), Some(seen)) => accel.trace_filtered(rays, mode, &SeenWithHoles { seen, holes }, hits, cancel),
         }
     }
 }
@@ -150,6 +153,18 @@ impl Filter for Holes<'_> {
         let mesh = self.scene.instances[hit.instance as usize].mesh;
         !self.looks.tested[mesh]
             || Surface::new(self.scene, mesh, &self.looks.textures).covers(hit.instance, hit.primitive, hit.u, hit.v)
+    }
+}
+
+/// Counts hits only where the surface is, and only on what is seen.
+struct SeenWithHoles<'a> {
+    seen: Seen<'a>,
+    holes: Holes<'a>,
+}
+
+impl Filter for SeenWithHoles<'_> {
+    fn accepts(&self, hit: &Hit) -> bool {
+        self.seen.accepts(hit) && self.holes.accepts(hit)
     }
 }
 

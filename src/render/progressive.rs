@@ -55,7 +55,7 @@ impl Request {
         let (a, b) = (&self.job, &other.job);
         let same = Arc::ptr_eq(&a.scene, &b.scene) && Arc::ptr_eq(&a.accel, &b.accel) && Arc::ptr_eq(&a.looks, &b.looks);
         let how = (a.camera, a.mode, a.sampling, a.transport) == (b.camera, b.mode, b.sampling, b.transport)
-            && (a.section, a.heat_rays) == (b.section, b.heat_rays);
+            && (a.section, a.heat_rays, &a.visible) == (b.section, b.heat_rays, &b.visible);
         same && how && (self.width, self.height) == (other.width, other.height) && self.keep.is_some() == other.keep.is_some()
     }
 }

@@ -11,7 +11,7 @@ use super::shade::{occlusion_ray, shader};
 use super::work::{Watch, Work};
 use super::{Film, HeatRays, Looks, Mode, Transport};
 use crate::accel::probe::Counts;
-use crate::accel::{self, Accel, Hit};
+use crate::accel::{self, Accel, Hit, Visibility};
 use crate::geometry::num::{floor_index, narrow};
 use crate::geometry::{HalfSpace, Ray};
 use crate::scene::{Camera, Frame, Scene};
@@ -39,6 +39,8 @@ pub struct Job {
     pub section: Option<HalfSpace>,
     /// Whose work is shown, where work is.
     pub heat_rays: HeatRays,
+    /// Which triangles rays see, if not all; of what a structure does for a ray nothing is left out.
+    pub visible: Option<Arc<Visibility>>,
 }
 
 impl std::fmt::Debug for Job {
@@ -54,10 +56,10 @@ const ROWS: usize = 4;
 type Pixels = Vec<(u32, u32)>;
 
 impl Job {
-    /// With independent samples, light followed as usual, and nothing cut away.
+    /// With independent samples, light followed as usual, and nothing cut away or hidden.
     pub fn new(scene: Arc<Scene>, accel: Arc<dyn Accel>, camera: Camera, mode: Mode, looks: Arc<Looks>) -> Self {
         let (sampling, transport, heat_rays) = (Sampling::default(), Transport::default(), HeatRays::default());
-        Self { scene, accel, camera, mode, looks, sampling, transport, heat_rays, section: None }
+        Self { scene, accel, camera, mode, looks, sampling, transport, heat_rays, section: None, visible: None }
     }
 
     /// The camera rays of a sample, row by row.
@@ -198,12 +200,13 @@ impl Job {
         Ok(work)
     }
 
-    /// Finds what rays hit; where surfaces have holes they pass.
+    /// Finds what rays hit; where surfaces have holes, and where triangles are hidden, they pass.
     ///
     /// # Errors
     /// As [`Accel::trace`].
     pub fn trace(&self, rays: &[Ray], mode: accel::Mode, hits: &mut [Option<Hit>], cancel: &Cancel) -> Result<(), Cancelled> {
-        self.looks.trace(&self.scene, self.accel.as_ref(), rays, mode, hits, cancel).map(|_| ())
+        let through = (self.accel.as_ref(), self.visible.as_deref());
+        self.looks.trace(&self.scene, through, rays, mode, hits, cancel).map(|_| ())
     }
 
     /// What is seen of the hits; samples of rays that hit nothing are left as they are.

@@ -15,6 +15,7 @@ use super::timings::Column;
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::accel::registry;
+use crate::accel::visibility::Change;
 use crate::geometry::Axis;
 use crate::lab::Fairness;
 use crate::render::sampler::SamplerKind;
@@ -80,6 +81,12 @@ const PANEL_BEFORE: KeyboardShortcut = with(Modifiers::SHIFT, Key::F6);
 pub const PALETTE: KeyboardShortcut = with(Modifiers::COMMAND, Key::P);
 /// For an audience.
 pub const PRESENT: KeyboardShortcut = with(Modifiers::NONE, Key::F10);
+/// Shows the triangles of the selected cell alone.
+pub const ISOLATE: KeyboardShortcut = with(Modifiers::NONE, Key::I);
+/// Hides them.
+pub const HIDE: KeyboardShortcut = with(Modifiers::NONE, Key::H);
+/// Shows all triangles again.
+pub const SHOW_ALL: KeyboardShortcut = with(Modifiers::SHIFT, Key::H);
 /// Keeps the view.
 pub const BOOKMARK: KeyboardShortcut = with(Modifiers::COMMAND, Key::D);
 /// The page of keys, on keyboards where it needs Shift and others.
@@ -169,6 +176,7 @@ pub fn all(state: &State) -> Vec<Action> {
     list.group = "View";
     view(&mut list, state);
     section(&mut list, state);
+    triangles(&mut list, state);
     list.group = "Boxes";
     boxes(&mut list, state);
     list.group = "Structure";
@@ -266,6 +274,14 @@ fn section(list: &mut List, state: &State) {
         let moved = SectionSettings { at: Section { place: (now.at.place + by).clamp(0.0, 1.0), ..now.at }, ..now };
         list.add(name, Command::Section(moved)).if_possible(open && now.on && moved != now);
     }
+}
+
+fn triangles(list: &mut List, state: &State) {
+    let selected = state.picked.as_ref().is_some_and(|picked| picked.selected().is_some()) && !state.is_measuring();
+    let isolate = Command::Hide(Change::Isolate);
+    list.add("Isolate the triangles of the selected cell", isolate).key(ISOLATE).if_possible(selected);
+    list.add("Hide the triangles of the selected cell", Command::Hide(Change::Hide)).key(HIDE).if_possible(selected);
+    list.add("Show all triangles", Command::ShowAll).key(SHOW_ALL).if_possible(state.visible().is_some());
 }
 
 fn boxes(list: &mut List, state: &State) {
@@ -376,7 +392,7 @@ fn ray(list: &mut List, state: &State) {
     let compared = state.can_compare_with_brute_force();
     list.add("Mark a rectangle to check with brute force", Command::MarkRectangle(true)).if_possible(compared);
     list.add("Check the whole view with brute force", Command::CheckByBrute(None)).if_possible(compared);
-    let differs = !state.brute.unlike().0.is_empty();
+    let differs = !state.brute.unlike().is_empty();
     list.add("Follow a ray that differs from brute force", Command::FollowUnlike(state.brute.next)).if_possible(differs);
     list.add(if playing { "Pause the ray" } else { "Play the ray" }, Command::Play(!playing)).if_possible(there);
 }

@@ -9,6 +9,7 @@ use super::settings::{Navigation, OverlaySettings, SectionSettings, ThemeChoice,
 use super::timings::Column;
 use super::tradeoffs::{Goodness, Miss, Plot};
 use crate::accel::params::ParamValues;
+use crate::accel::visibility::Change;
 use crate::geometry::Axis;
 use crate::geometry::tri::TestKind;
 use crate::lab::{Fairness, PixelRect, RayKind};
@@ -52,6 +53,12 @@ pub enum Command {
     Overlay(OverlaySettings),
     /// Cut the model open elsewhere, or not at all.
     Section(SectionSettings),
+    /// Show the triangles of the selected cell alone, or hide them.
+    Hide(Change),
+    /// Stop that.
+    CancelHide,
+    /// Show all triangles again.
+    ShowAll,
     /// Look from elsewhere.
     Camera(Camera),
     /// Look from where the camera was before its last move.

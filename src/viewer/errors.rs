@@ -24,6 +24,8 @@ pub struct View {
     pub camera: Camera,
     /// What of the world is left.
     pub section: Option<HalfSpace>,
+    /// The number of what says which triangles are seen.
+    pub visible: Option<u64>,
     /// Columns and rows.
     pub size_px: [u32; 2],
     /// What samples are made of.

@@ -1,12 +1,14 @@
 //! What can be taken back: the camera's moves, and the choices of structure, parameters, selection
 //! and visibility. The two histories know nothing of each other (Alt+Left/Right, Ctrl+Z).
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::command::Command;
 use super::panes::PaneSettings;
 use super::pick::Picked;
 use super::settings::{OverlaySettings, SectionSettings, Settings};
+use crate::accel::Visibility;
 use crate::geometry::tri::TestKind;
 
 /// The most steps that are remembered.
@@ -100,6 +102,9 @@ pub struct Choices {
     /// Pictures beside the first.
     #[serde(skip)]
     panes: PaneSettings,
+    /// Which triangles are seen, if not all.
+    #[serde(skip)]
+    visible: Option<Arc<Visibility>>,
     /// What is selected.
     #[serde(skip)]
     pub picked: Option<Picked>,
@@ -115,6 +120,7 @@ impl Choices {
             overlay: settings.overlay,
             section: settings.section,
             panes: settings.panes.clone(),
+            visible: settings.visible.clone(),
             picked: picked.cloned(),
         }
     }
@@ -126,6 +132,7 @@ impl Choices {
         settings.test = self.test;
         settings.overlay = self.overlay;
         settings.section = self.section;
+        settings.visible.clone_from(&self.visible);
         // Dividers that were moved since stay where they are.
         let dividers = std::mem::take(&mut settings.panes.dividers);
         settings.panes = self.panes.clone();
@@ -142,7 +149,7 @@ impl Choices {
     /// The kind of change that a command makes to them, if it makes one at once.
     pub const fn changed_by(command: &Command) -> Option<Kind> {
         match command {
-            Command::Structure(_) | Command::Test(_) | Command::OpenCase(_) => Some(Kind::Single),
+            Command::Structure(_) | Command::Test(_) | Command::OpenCase(_) | Command::ShowAll => Some(Kind::Single),
             Command::PutBeside(_) | Command::PutPane(..) | Command::ClosePane(_) | Command::Arrange(_) => Some(Kind::Single),
             Command::Params(_) => Some(Kind::Params),
             Command::Overlay(_) => Some(Kind::Overlay),

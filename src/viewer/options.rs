@@ -50,7 +50,9 @@ pub struct ViewerOptions {
     pub errors: Option<Plot>,
     /// Begin in the Structure workspace; with `screenshot`, select that cell first.
     pub select: Option<Rank>,
-    /// With that, try a plane across an axis of it, at a place from 0 to 1.
+    /// With that, show the triangles of that cell alone.
+    pub isolate: bool,
+    /// With `select`, try a plane across an axis of it, at a place from 0 to 1.
     pub try_plane: Option<(Axis, f64)>,
     /// Begin in the Structure workspace; with `screenshot`, make the film of the build first, and go to that part of it, from 0
     /// to 1.

@@ -335,6 +335,7 @@ pub fn plane_in(cell: &Aabb, axis: Axis, pos: f32) -> Aabb {
 mod tests {
     use super::*;
     use crate::accel::{BuildCx, registry};
+    use crate::geometry::Side;
     use crate::geometry::tri::TestKind;
     use crate::scene::{Camera, Geometry, LoadCx, Projection, open};
     use glam::Vec3;
@@ -370,6 +371,40 @@ mod tests {
                 parts[x + 4 * y + 16 * z] += 1;
             }
             assert!(parts.iter().all(|n| (4..=36).contains(n)), "{projection:?}: about 16 in each: {parts:?}");
+        }
+    }
+
+    #[test]
+    fn boxes_that_are_cut_away_are_left_out_and_the_plane_is_drawn() {
+        let cx = LoadCx::unattended();
+        let scene = open("builtin:teapot?triangles=1000", &cx).expect("built in");
+        let geometry = Arc::new(Geometry::new(&scene, &cx).expect("fits"));
+        for id in ["bvh", "kdtree"] {
+            let entry = registry::find(id).expect("registered");
+            let accel = entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &BuildCx::unattended(1)).expect("builds");
+            let settings = OverlaySettings { depth: 6, from_depth: 0, ..OverlaySettings::default() };
+            let camera = scene.first_camera(geometry.world_bounds(), 1.0);
+            let whole = View::new(&camera, geometry.space(), 1.0);
+            let collected = |view: View| {
+                let (size_px, limit, top, counted, film_at) = ([1000, 1000], 10_000, None, None, None);
+                let wanted = Wanted { settings, view, size_px, limit, top, numbered: false, counted, film_at };
+                collect(accel.as_ref(), (None, None, None), &wanted, &Cancel::new()).expect("not cancelled").overlay
+            };
+            let all = collected(whole);
+            // No plane of a cell, so that rounding decides nothing.
+            let at = |place: f32| geometry.bounds().min.x + place * geometry.bounds().size().x;
+            for side in [Side::Below, Side::Above] {
+                let section = HalfSpace { axis: Axis::X, at: at(0.5123), side };
+                let left = collected(whole.within(Some(section)));
+                let bounds = |b: &BoxInstance| Aabb { min: b.at(Vec3::ZERO), max: b.at(Vec3::ONE) };
+                let expected: Vec<&BoxInstance> = all.boxes.iter().filter(|b| !section.misses(&bounds(b))).collect();
+                assert_eq!(left.boxes.len(), expected.len(), "{id}");
+                assert!(left.boxes.len() < all.boxes.len());
+                let plane = bounds(left.planes.last().expect("drawn"));
+                assert_eq!((plane.min.x, plane.max.x), (section.at, section.at));
+                let planes = all.planes.iter().filter(|plane| !section.misses(&bounds(plane))).count();
+                assert_eq!(left.planes.len(), planes + 1, "{id}");
+            }
         }
     }
 

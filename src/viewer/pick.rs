@@ -8,7 +8,7 @@ use super::overlay::placed;
 use crate::accel::cell::{Cell, CellId, Descend, bounds_in_scene, walk};
 use crate::accel::outline::{Outline, cells_along};
 use crate::accel::probe::Counts;
-use crate::accel::{Accel, Hit, Mode};
+use crate::accel::{Accel, Hit, Mode, Visibility};
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Scene;
 use crate::task::{Cancel, Cancelled};
@@ -77,19 +77,32 @@ impl Picked {
     }
 }
 
-/// Traces the ray of the click; `None` if it meets nothing.
+/// Traces the ray of the click; `None` if it meets nothing that is seen.
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
-pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray, cancel: &Cancel) -> Result<Option<Picked>, Cancelled> {
+pub fn pick(
+    scene: &Scene,
+    (accel, visible): (&dyn Accel, Option<&Visibility>),
+    ray: &Ray,
+    cancel: &Cancel,
+) -> Result<Option<Picked>, Cancelled> {
     let mut counts = Counts::default();
-    let Some(hit) = accel.trace_watched(ray, Mode::Closest, &mut counts, cancel)? else { return Ok(None) };
+    let mut hit = accel.trace_watched(ray, Mode::Closest, &mut counts, cancel)?;
+    if let Some(visible) = visible {
+        let mut hits = [None];
+        accel.trace_filtered(&[*ray], Mode::Closest, &visible.filter(accel.geometry()), &mut hits, cancel)?;
+        hit = hits[0];
+    }
+    let Some(hit) = hit else { return Ok(None) };
     let path = path_to(accel, ray, &hit);
     let mesh = &scene.meshes[scene.instances[hit.instance as usize].mesh];
     let name = if mesh.name.is_empty() { String::new() } else { format!(" of {}", mesh.name) };
     let depth = path.last().map(|leaf| format!(", leaf at depth {}", leaf.depth)).unwrap_or_default();
-    let work = format!("{} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
-    let text = format!("Triangle {}{name}{depth}: this ray took {work}", format::count(u64::from(hit.primitive)));
+    let text = format!("Triangle {}{name}{depth}", format::count(u64::from(hit.primitive)));
+    // The ray that passes what is hidden is none that is counted.
+    let work = format!(": this ray took {} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
+    let text = if visible.is_some() { text } else { text + &work };
     Ok(Some(Picked::at_end(accel, path, text)))
 }
 

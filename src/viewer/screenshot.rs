@@ -17,6 +17,7 @@ use super::state::State;
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
 use crate::accel::registry;
+use crate::accel::visibility::Change;
 use crate::geometry::Axis;
 
 /// What is still to be done.
@@ -29,6 +30,8 @@ pub struct Screenshot {
     errors: Option<(Plot, usize)>,
     /// The cell that is still to be selected, and the plane to be tried in it.
     select: Option<Rank>,
+    /// Its triangles are still to be isolated.
+    isolate: bool,
     try_plane: Option<(Axis, f64)>,
     /// The part of the film that is still to be gone to, and whether the film was asked for.
     film: Option<(f32, bool)>,
@@ -80,6 +83,7 @@ impl Screenshot {
             check: options.check,
             errors: options.errors.map(|plot| (plot, 0)),
             select: options.select,
+            isolate: options.isolate,
             try_plane: options.try_plane,
             film: options.film.map(|part| (part, false)),
             follow: follow(options),
@@ -104,6 +108,7 @@ impl Screenshot {
                 let outline = state.tree.outline.as_ref();
                 commands.extend(self.select.take().and_then(|rank| outline?.greatest(rank)).map(Command::SelectRow));
             }
+            Stage::Settling if settled && std::mem::take(&mut self.isolate) => commands.push(Command::Hide(Change::Isolate)),
             Stage::Settling if settled && self.try_plane.is_some() => {
                 commands.push(Command::TryPlane(self.try_plane.take()));
             }

@@ -1,7 +1,9 @@
 //! What the window remembers from one day to the next.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use crate::accel::Visibility;
 use super::panes::PaneSettings;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
@@ -36,6 +38,9 @@ pub struct Settings {
     pub overlay: OverlaySettings,
     /// Where the model is cut open: as long as it is the same model.
     pub section: SectionSettings,
+    /// Which triangles are hidden: those of the open model, so that they are in no file.
+    #[serde(skip)]
+    pub visible: Option<Arc<Visibility>>,
     /// What stands around the view.
     pub workspace: Workspace,
     /// Pictures beside that of the structure.
@@ -73,6 +78,7 @@ impl Default for Settings {
             sampler: SamplerKind::default(),
             overlay: OverlaySettings::default(),
             section: SectionSettings::default(),
+            visible: None,
             workspace: Workspace::default(),
             panes: PaneSettings::default(),
             hide_outcome: false,

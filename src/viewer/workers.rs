@@ -16,7 +16,7 @@ use super::tree::Listed;
 use crate::accel::outline::{Outline, OutlineError};
 use crate::accel::registry;
 use crate::accel::stats::{SahWeights, Stats};
-use crate::accel::{Accel, BuildCx, BuildError, Cell, CellId};
+use crate::accel::{Accel, BuildCx, BuildError, Cell, CellId, Visibility};
 use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::job::Job;
@@ -205,8 +205,13 @@ pub fn collect(
 pub type Picking = Job<Result<Option<Picked>, Cancelled>>;
 
 /// Starts looking what is under a click: a ray through a structure that is none can take long.
-pub fn pick(shared: &Shared, scene: Arc<Scene>, accel: Arc<dyn Accel>, ray: Ray) -> std::io::Result<Picking> {
-    Job::spawn("pick", shared.waker(), move |cancel, _| pick::pick(&scene, accel.as_ref(), &ray, cancel))
+pub fn pick(
+    shared: &Shared,
+    scene: Arc<Scene>,
+    (accel, visible): (Arc<dyn Accel>, Option<Arc<Visibility>>),
+    ray: Ray,
+) -> std::io::Result<Picking> {
+    Job::spawn("pick", shared.waker(), move |cancel, _| pick::pick(&scene, (accel.as_ref(), visible.as_deref()), &ray, cancel))
 }
 
 /// The SAH curves of a cell, on their way.

@@ -175,7 +175,7 @@ fn what_a_structure_does_more_is_orange_and_what_the_other_does_blue() {
     assert!(less.range.min == -less.range.max && less.range.max >= 1.0, "{:?}", less.range);
     let (a, b) = (first.amounts.as_ref().expect("asked for"), second.amounts.as_ref().expect("asked for"));
     let (mut more, mut fewer) = (0, 0);
-    for (i, (a, b)) in a.iter().zip(b).enumerate().filter(|(_, (a, b))| !a.is_nan() && !b.is_nan()) {
+    for (i, (a, b)) in a.values.iter().zip(&b.values).enumerate().filter(|(_, (a, b))| !a.is_nan() && !b.is_nan()) {
         let [red, blue] = [less.rgba[4 * i], less.rgba[4 * i + 2]];
         match a - b {
             d if d > 0.2 * less.range.max => {

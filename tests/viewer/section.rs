@@ -165,3 +165,47 @@ fn the_whole_view_is_checked_without_a_mouse() {
     w.settle();
     assert!(!w.has(Role::Button, "Check the whole view"));
 }
+
+#[test]
+fn triangles_of_a_cell_are_isolated_hidden_and_shown_again() {
+    let mut w = window(TEAPOT, None);
+    let whole = depths(&w);
+    w.key(Modifiers::NONE, Key::F2);
+    w.until("the tree", |s| s.tree.outline.is_some());
+    w.settle();
+    let all = depths(&w);
+    w.button("Fullest leaf");
+    w.settle();
+    w.button("Isolate");
+    w.until("the isolated triangles", |s| s.settings.visible.is_some());
+    w.settle();
+    let isolated = depths(&w);
+    assert!(isolated.iter().zip(&all).all(|(a, b)| a >= b) && isolated != all);
+    assert!(w.says("triangles are hidden"));
+    // The same keys as in the tooltips.
+    w.key(Modifiers::SHIFT, Key::H);
+    w.settle();
+    assert!(w.state().settings.visible.is_none() && depths(&w) == all);
+    w.key(Modifiers::NONE, Key::H);
+    w.until("the hidden triangles", |s| s.settings.visible.is_some());
+    w.settle();
+    let hidden = depths(&w);
+    let both: Vec<f32> = isolated.iter().zip(&hidden).map(|(a, b)| a.min(*b)).collect();
+    assert!(both == all, "isolated and hidden are the whole");
+    // Each is a step that can be taken back.
+    w.key(Modifiers::COMMAND, Key::Z);
+    w.settle();
+    assert!(w.state().settings.visible.is_none());
+    w.key(Modifiers::COMMAND, Key::Z);
+    w.settle();
+    assert!(depths(&w) == isolated);
+    // Another structure shows the same triangles.
+    w.key(Modifiers::NONE, Key::F1);
+    w.button("k-d tree");
+    w.settle();
+    assert!(w.state().visible().is_some());
+    w.open_path(TEAPOT);
+    w.settle();
+    assert!(w.state().settings.visible.is_none());
+    assert!(depths(&w) == whole);
+}

@@ -212,6 +212,12 @@ impl Surface {
         let geometry = job.accel.geometry();
         let seen = self.seen.as_ref()?;
         let incoming = sources.choose((&job.scene, geometry, job.looks.textures()), self.point.at, which, u)?;
+        // What is hidden does not shine.
+        if let (Some(visible), Some((instance, primitive))) = (&job.visible, incoming.triangle)
+            && !visible.sees(geometry, instance, primitive)
+        {
+            return None;
+        }
         // Light from behind is not asked for, also where the surface is clear: only its own directions find it.
         let from = to_local(&self.axes, incoming.dir);
         if self.point.normal.dot(incoming.dir) <= 0.0 || from.z <= 0.0 {

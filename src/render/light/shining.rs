@@ -46,6 +46,8 @@ pub struct Chosen {
     pub normal: Vec3,
     /// How densely such points are chosen, over area.
     pub density: f32,
+    /// The triangle: its instance, and its number in the mesh.
+    pub triangle: (u32, u32),
 }
 
 /// Triangles between two looks at the cancel flag.
@@ -132,7 +134,8 @@ impl Shining {
         let of_image = || Finish::new(scene, mesh(), textures).emission(emitter.primitive, v, w).into();
         let radiance = emitter.radiance.unwrap_or_else(of_image);
         let density = narrow(f64::from(emitter.brightness) / total);
-        Some(Chosen { radiance, at, normal: emitter.normal, density })
+        let triangle = (emitter.instance, emitter.primitive);
+        Some(Chosen { radiance, at, normal: emitter.normal, density, triangle })
     }
 
     /// How densely [`Self::choose`] chooses points of triangles of a material, over area: of brighter ones as much more as

@@ -71,6 +71,8 @@ pub struct Incoming {
     pub dir: Vec3,
     /// Where that is, in the world; `None` if infinitely far away.
     pub from: Option<Vec3>,
+    /// The triangle that it leaves, if it does: its instance, and its number in the mesh.
+    pub triangle: Option<(u32, u32)>,
     /// Radiance over [`Self::density`]; of a beam, irradiance over how likely it was chosen.
     pub light: Vec3,
     /// How densely such directions are chosen, over solid angle; infinite for a beam, which nothing else finds.
@@ -162,7 +164,7 @@ impl Sources {
         } else if falls_to(beams) {
             let beam = self.beams.choose(which, geometry.space().world_point(point))?;
             let light = beam.irradiance / (beam.chance * beams);
-            Some(Incoming { dir: beam.dir, from: beam.at, light, density: f32::INFINITY })
+            Some(Incoming { dir: beam.dir, from: beam.at, triangle: None, light, density: f32::INFINITY })
         } else if falls_to(sun) {
             let dir = self.sun?.choose(u);
             self.of_far(dir, Some(self.sun?.irradiance()))
@@ -182,7 +184,8 @@ impl Sources {
         let cosine = chosen.normal.dot(dir).abs();
         let density = self.chances[0] * chosen.density * distance * distance / cosine;
         let (from, light) = (Some(geometry.space().world_point(chosen.at)), chosen.radiance / density);
-        (density > 0.0 && density.is_finite()).then_some(Incoming { dir, from, light, density })
+        let triangle = Some(chosen.triangle);
+        (density > 0.0 && density.is_finite()).then_some(Incoming { dir, from, triangle, light, density })
     }
 
     /// What comes from far away, from a direction that was chosen; at the sun's edge rounding would lose it.
@@ -192,7 +195,7 @@ impl Sources {
             let of_sun = sun.density(sun.choose(Vec2::ZERO));
             (radiance, density) = (radiance + irradiance * of_sun, density + self.chances[2] * of_sun);
         }
-        (density > 0.0).then(|| Incoming { dir, from: None, light: radiance / density, density })
+        (density > 0.0).then(|| Incoming { dir, from: None, triangle: None, light: radiance / density, density })
     }
 
     /// Radiance from far away, from a direction of unit length, and how densely [`Self::choose`] chooses that over solid angle.

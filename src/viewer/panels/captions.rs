@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use eframe::egui::{Align2, Color32, Pos2, Rect, Stroke, TextStyle, Ui, Vec2, pos2, vec2};
 
+use super::hiding;
 use crate::accel::cell::Layout;
 use crate::render::Range;
 use crate::render::colormap::{difference, viridis};
@@ -45,7 +46,9 @@ fn captions(state: &State) -> Vec<Caption> {
     let (coarse, marked, change) = if state.is_comparing() { (None, None, None) } else { (coarse, marked, change) };
     let at = |at| move |text| Caption::new(at, text);
     let above = |text| Caption { row: 1, ..Caption::new(Align2::LEFT_BOTTOM, text) };
+    let hidden = hiding::in_words(state).map(|text| Caption { row: 2, ..Caption::new(Align2::LEFT_BOTTOM, text) });
     let lines = [
+        hidden,
         showing.map(at(Align2::LEFT_BOTTOM)),
         picked.map(above),
         coarse.map(at(Align2::RIGHT_TOP)),

@@ -4,9 +4,10 @@ use eframe::egui::{CursorIcon, Pos2, Rect, Response, Stroke, StrokeKind, Ui, pos
 
 use super::Commands;
 use crate::lab::PixelRect;
+use crate::viewer::brute::{Brute, middle};
 use crate::viewer::command::Command;
-use crate::viewer::state::State;
 use crate::viewer::theme::{self, Marker, Palette};
+use glam::Vec2;
 
 /// Under which name a drag is remembered.
 const MARKED: &str = "marked rectangle";
@@ -43,21 +44,28 @@ fn outline(ui: &Ui, marked: Rect) {
 }
 
 /// The rectangle that was compared, and the pixels of it that differ.
-pub fn show(ui: &Ui, rect: Rect, state: &State) {
-    let Some((of, compared)) = &state.brute.of else { return };
-    let [width, height] = of.size_px.map(|n| n.max(1) as f32);
-    let place = |x: f32, y: f32| rect.min + vec2(x / width, y / height) * rect.size();
-    let [x, y, columns, rows] = [compared.at[0], compared.at[1], compared.size[0], compared.size[1]].map(|n| n as f32);
-    if *compared != PixelRect::whole(of.size_px) {
-        outline(ui, Rect::from_min_max(place(x, y), place(x + columns, y + rows)));
+pub fn show(ui: &Ui, rect: Rect, brute: &Brute) {
+    let Some((_, part)) = &brute.of else { return };
+    let place = |pixel: Vec2| {
+        let place = part.place(pixel, rect.aspect_ratio());
+        rect.min + vec2(place.x, place.y) * rect.size()
+    };
+    let [from, size] = [part.rect.at, part.rect.size].map(|n| Vec2::from(n.map(|n| n as f32)));
+    if part.rect != PixelRect::whole(part.size_px) {
+        outline(ui, Rect::from_min_max(place(from), place(from + size)));
     }
     let (palette, painter) = (Palette::in_ui(ui), ui.painter_at(rect));
-    for pixel in state.brute.unlike().0 {
-        let at = place(pixel.pixel[0] as f32 + 0.5, pixel.pixel[1] as f32 + 0.5);
-        let color = if pixel.rounded { palette.warn } else { palette.fail };
+    for pixel in brute.unlike() {
+        let (at, color) = (place(middle(pixel)), if pixel.rounded { palette.warn } else { palette.fail });
         Marker::Cross.paint(&painter, at, theme::MARK + theme::RAY_HALO, theme::plate(palette));
         Marker::Cross.paint(&painter, at, theme::MARK, color);
     }
+}
+
+/// The pixel that differs whose mark is there, by its number.
+pub fn near(at: Pos2, rect: Rect, brute: &Brute) -> Option<usize> {
+    let place = (at - rect.min) / rect.size();
+    brute.near(Vec2::new(place.x, place.y), rect.aspect_ratio(), theme::MARK / rect.height())
 }
 
 /// The pixels that a rectangle of the window touches; `None` where it is hardly more than a click.

@@ -88,6 +88,7 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.rays.following.is_some(), Command::CancelFollow),
         (state.brute.marking, Command::MarkRectangle(false)),
         (state.brute.running.is_some(), Command::CancelBrute),
+        (state.hiding.is_some(), Command::CancelHide),
         (state.ray_list.reading.is_some() || state.ray_list.tracing.is_some(), Command::CancelRays),
         (state.panes.tuned.is_some(), Command::TunePane(None)),
         (building.is_some(), Command::ClosePane(building.unwrap_or_default())),

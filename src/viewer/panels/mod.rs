@@ -16,6 +16,7 @@ pub mod findings;
 pub mod heat;
 pub mod focus;
 pub mod help;
+pub mod hiding;
 pub mod long_list;
 pub mod marking;
 pub mod memory;

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{Commands, decision, empty, fact, heading, tree};
+use super::{Commands, decision, empty, fact, heading, hiding, tree};
 use crate::accel::cell::{Cell, CellKind, Split};
 use crate::viewer::command::Command;
 use crate::viewer::format;
@@ -13,9 +13,11 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     heading(ui, "Selected cell");
     let Some(cell) = state.picked.as_ref().and_then(|picked| picked.selected()) else {
         empty(ui, "Nothing is selected. Click the picture, or a row of the tree.");
+        hiding::show(ui, state, commands);
         return;
     };
     tree::steps(ui, state, commands);
+    hiding::show(ui, state, commands);
     figures(ui, state, cell);
     ui.separator();
     heading(ui, "Decision");

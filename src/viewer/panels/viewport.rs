@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
     // All views are seen by one camera: what is under the pointer in one of them is so in each.
     let under = |at: Pos2| places.iter().find(|place| place.seen.contains(at)).map(|place| place.view);
     if matches!(state.settings.workspace, Workspace::View | Workspace::Ray) {
-        marking::show(ui, view, state);
+        marking::show(ui, view, &state.brute);
     }
     if state.brute.marking {
         marking::hands(ui, &response, view, size_px, commands);
@@ -64,7 +64,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked())
             && let Some(view) = under(at)
         {
-            commands.push(clicked(in_picture(view, at), state, pixels_per_point));
+            commands.push(clicked(at, view, state));
         }
     }
     let view = response.hover_pos().and_then(under).unwrap_or(view);
@@ -75,10 +75,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
 }
 
 /// What a click asks for: what is there, or why it differs where that is marked.
-fn clicked(at: Vec2, state: &State, pixels_per_point: f32) -> Command {
-    let marked = state.brute.near(at, theme::MARK * pixels_per_point);
-    let marked = marked.filter(|_| state.can_compare_with_brute_force());
-    marked.map_or(Command::Pick(at), Command::FollowUnlike)
+fn clicked(at: Pos2, view: Rect, state: &State) -> Command {
+    let marked = marking::near(at, view, &state.brute).filter(|_| state.can_compare_with_brute_force());
+    marked.map_or(Command::Pick(in_picture(view, at)), Command::FollowUnlike)
 }
 
 fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_per_point): ([u32; 2], f32)) {
@@ -89,6 +88,8 @@ fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_
     let camera = state.picture.as_ref().map_or(state.camera, |p| p.camera);
     let base = match state.on_screen() {
         Some(picture) => Base::Picture(Arc::clone(picture)),
+        // The preview would show what is hidden.
+        None if state.visible().is_some() => Base::Nothing,
         None => Base::Raster(Raster {
             mesh: Arc::clone(&model.raster),
             color: palette.preview.to_array(),

@@ -8,7 +8,7 @@ use crate::accel::registry;
 use crate::job::Outcome;
 use crate::lab::{PixelRect, RayKind};
 use crate::render::{self, Mode};
-use crate::viewer::brute::{self, Of};
+use crate::viewer::brute::{self, Of, Part};
 use crate::viewer::kept::Key;
 use crate::viewer::settings::Workspace;
 
@@ -31,7 +31,8 @@ impl State {
     /// The present view, as far as it says what is compared.
     fn compared(&self) -> Option<Of> {
         let key = self.shown.as_ref()?.key.clone();
-        Some(Of { key, camera: self.camera, section: self.section(), size_px: self.size_px })
+        let (section, visible) = (self.section(), self.visible().cloned());
+        Some(Of { key, camera: self.camera, section, visible })
     }
 
     /// Compares a rectangle of the view, or all of it, with brute force.
@@ -46,13 +47,15 @@ impl State {
         let there = self.kept.take_up(&key).ok_or(key);
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
         let whole = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
-        let view = render::Job { section: self.section(), ..whole };
-        let rect = rect.unwrap_or_else(|| PixelRect::whole(self.size_px));
-        let job = brute::compare(&self.shared, there, view, self.size_px, rect);
+        let view = render::Job { section: self.section(), visible: self.visible().cloned(), ..whole };
+        let part = Part { rect: rect.unwrap_or_else(|| PixelRect::whole(self.size_px)), size_px: self.size_px };
+        let job = brute::compare(&self.shared, there, view, part);
         self.brute.clear();
+        // The result is that of this view, whatever becomes of the viewport.
+        self.framed = None;
         match job {
             Ok(job) => {
-                self.brute.of = self.compared().map(|of| (of, rect));
+                self.brute.of = self.compared().map(|of| (of, part));
                 self.brute.running = Some((job, Instant::now()));
             }
             Err(e) => self.fail(format!("Can't compare with brute force: {e}.")),
@@ -92,7 +95,7 @@ impl State {
 
     /// Follows the ray of a pixel that differs in the Ray workspace, brute force beside it.
     pub(super) fn follow_unlike(&mut self, number: usize) {
-        let (unlike, _) = self.brute.unlike();
+        let unlike = self.brute.unlike();
         let (count, Some(ray)) = (unlike.len(), unlike.get(number).map(|pixel| pixel.ray)) else { return };
         self.brute.next = (number + 1) % count;
         (self.rays.asked, self.rays.kind, self.rays.playing) = (Some(ray), RayKind::Primary, None);

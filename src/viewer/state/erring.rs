@@ -30,7 +30,8 @@ impl State {
     /// Curves are those of one view: forgets them with it.
     pub(super) fn follow_errors(&mut self, now: &Asked) {
         let Asked { model, textured, camera, section, size_px, sampler, .. } = *now;
-        let of = View { model, textured, camera, section, size_px, sampler };
+        let visible = now.visible.as_ref().map(|visible| visible.number());
+        let of = View { model, textured, camera, section, visible, size_px, sampler };
         if now.mode == Mode::Path && self.errors.view != Some(of) {
             let fresh = Errors { as_table: self.errors.as_table, view: Some(of), ..Errors::default() };
             self.shared.give_back(std::mem::replace(&mut self.errors, fresh));
@@ -109,9 +110,9 @@ impl State {
             return;
         };
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        // The picture's own section: it is what is compared.
+        // What the picture shows, since it is what is compared.
         let whole = render::Job::new(scene, accel, self.camera, Mode::Path, Arc::clone(&model.looks));
-        let view = render::Job { section: self.section(), ..whole };
+        let view = render::Job { section: self.section(), visible: self.visible().cloned(), ..whole };
         match workers::reference(&self.shared, view, self.size_px, spp, pause) {
             Ok(job) => self.errors.making = Some((spp, job)),
             Err(e) => self.fail(format!("Can't make the reference: {e}.")),

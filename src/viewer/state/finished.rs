@@ -82,7 +82,7 @@ impl State {
         let (beside, kind, speed) = (std::mem::take(&mut self.rays.beside), self.rays.kind, self.rays.speed);
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
         self.shared.give_back(before.columns);
-        self.brute = Brute::default();
+        (self.brute, self.hiding, self.settings.visible) = (Brute::default(), None, None);
         self.close_rays();
         self.awaited = None;
         self.forget_panes();

@@ -15,6 +15,7 @@ mod fitting;
 mod following;
 mod heating;
 mod growing;
+mod hiding;
 mod keeping;
 mod listing;
 mod panes;
@@ -30,6 +31,7 @@ pub use bookmarks::Bookmark;
 pub use causes::Causes;
 pub use heating::LEAST_SPAN;
 pub use panes::{Pane, Panes};
+use hiding::Hiding;
 use saving::{Awaited, Saving};
 use visiting::Visiting;
 
@@ -66,7 +68,7 @@ use super::workers::{
     self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Needing, Picking, Plan, Predicting, Shared,
 };
 use super::workspace_file::WorkspaceFile;
-use crate::accel::{CellId, cell};
+use crate::accel::{CellId, Visibility, cell};
 use crate::geometry::HalfSpace;
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
@@ -137,6 +139,8 @@ pub struct State {
     pub brute: Brute,
     /// A file of rays, there.
     pub ray_list: RayList,
+    /// Triangles to be hidden, on their way.
+    pub hiding: Option<Hiding>,
     /// What was last clicked.
     pub picked: Option<Picked>,
     /// An error to show, until it is put away.
@@ -235,6 +239,8 @@ struct Asked {
     camera: Camera,
     /// What of the world is left.
     section: Option<HalfSpace>,
+    /// Which triangles are seen.
+    visible: Option<Arc<Visibility>>,
     mode: Mode,
     /// Whose work is shown, of heat maps.
     heat_rays: HeatRays,
@@ -301,6 +307,7 @@ impl State {
             rays: Rays::default(),
             brute: Brute::default(),
             ray_list: RayList::default(),
+            hiding: None,
             picked: None,
             error: None,
             answer: None,
@@ -404,6 +411,7 @@ impl State {
             || self.is_tiling()
             || self.awaits_visits()
             || self.ray_list.is_busy()
+            || self.hiding.is_some()
             || self.saving.is_busy()
             || self.exports.is_writing()
             || self.awaited.is_some()
@@ -453,6 +461,9 @@ impl State {
                 self.settings.overlay = overlay;
             }
             Command::Section(section) => self.cut(section),
+            Command::Hide(change) => self.hide_triangles(change),
+            Command::CancelHide => self.hiding = None,
+            Command::ShowAll => (self.settings.visible, self.hiding) = (None, None),
             Command::Camera(camera) => self.look(camera, Kind::Hand),
             Command::CameraBack => self.camera = self.cameras.back(self.camera).unwrap_or(self.camera),
             Command::CameraForward => self.camera = self.cameras.forward(self.camera).unwrap_or(self.camera),
@@ -580,7 +591,8 @@ impl State {
             self.follow_anew(ray);
         }
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), Arc::clone(&shown.accel), ray).ok();
+        let through = (Arc::clone(&shown.accel), self.visible().cloned());
+        self.picking = workers::pick(&self.shared, Arc::clone(&model.scene), through, ray).ok();
     }
 
     /// Moves the camera; it can be moved back.
@@ -592,7 +604,7 @@ impl State {
     /// Brings choices back that were left.
     fn restore(&mut self, choices: Option<Choices>) {
         let Some(choices) = choices else { return };
-        (self.picking, self.tree.selecting) = (None, None);
+        (self.picking, self.tree.selecting, self.hiding) = (None, None, None);
         choices.restore(&mut self.settings);
         self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
         self.choose();
@@ -759,6 +771,7 @@ impl State {
         self.advance_following();
         self.advance_brute_force();
         self.advance_ray_list();
+        self.advance_hiding();
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();

@@ -10,7 +10,7 @@ use crate::job::{Job, Outcome};
 use crate::render::sampler::Sampling;
 use crate::render::{self, Mode, Picture, Renderer, Request};
 use crate::task::Cancelled;
-use crate::viewer::gpu::{Overlay, View};
+use crate::viewer::gpu::Overlay;
 use crate::viewer::kept::{Built, Key};
 use crate::viewer::overlay::{Collected, Wanted};
 use crate::viewer::panes::{PaneChoice, Pauses};
@@ -263,7 +263,7 @@ impl State {
             let job = render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks));
             let ([width, height], max_samples, tone) = (wanted.size_px, wanted.max_samples, wanted.tone);
             let (range, heat_rays, section) = (wanted.range, wanted.heat_rays, wanted.section);
-            let job = render::Job { sampling, heat_rays, section, ..job };
+            let job = render::Job { sampling, heat_rays, section, visible: wanted.visible.clone(), ..job };
             let number = renderer.request(Request { job, width, height, max_samples, range, tone, keep: None });
             pane.requested = Some(Asked { number, ..wanted });
         }

@@ -37,6 +37,7 @@ impl State {
             model: self.models,
             camera: self.camera,
             section: self.section(),
+            visible: self.visible().cloned(),
             mode,
             // Of other pictures it changes nothing.
             heat_rays: if mode.is_heat() { self.settings.heat_rays } else { HeatRays::default() },
@@ -52,7 +53,8 @@ impl State {
             let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
             let sampling = Sampling { kind: asked.sampler, seed: 0 };
             let whole = render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks));
-            let job = render::Job { sampling, heat_rays: asked.heat_rays, section: asked.section, ..whole };
+            let (heat_rays, section, visible) = (asked.heat_rays, asked.section, asked.visible.clone());
+            let job = render::Job { sampling, heat_rays, section, visible, ..whole };
             let keep = asked.keeps.then(|| self.shared.budget.clone());
             let request = Request { job, width, height, max_samples, range: asked.range, tone: asked.tone, keep };
             let number = self.renderer.request(request);

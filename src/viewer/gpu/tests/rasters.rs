@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::device::Headless;
 use super::{boxed, list, overlay, view};
+use crate::geometry::{Axis, HalfSpace, Side};
 use crate::scene::{Geometry, Instance, LoadCx, Mesh, Scene};
 use crate::viewer::gpu::{Base, Raster, RasterMesh};
 
@@ -81,6 +82,39 @@ fn the_nearer_of_two_triangles_is_seen_whatever_their_order() {
             assert!(middle + 20 < beside, "{order:?}: {middle} {beside}");
         }
     }
+}
+
+#[test]
+fn what_a_section_cuts_away_is_not_drawn_and_hides_nothing() {
+    let Some(mut gpu) = Headless::new("a section of the raster preview") else { return };
+    // A wall, and another one before it that is cut at the middle.
+    let wall = |z: f32| [Vec3::new(-0.9, -0.9, z), Vec3::new(0.9, -0.9, z), Vec3::new(0.0, 0.9, z)];
+    let geometry = || geometry([wall(-0.5), wall(0.2)].concat(), vec![[0, 1, 2], [3, 4, 5]]);
+    let scale = geometry().space().scale() as f32;
+    for (axis, side) in [(Axis::X, Side::Below), (Axis::X, Side::Above), (Axis::Y, Side::Below)] {
+        for orthographic in [false, true] {
+            let mut list = list(128, Base::Raster(raster(geometry())));
+            list.view = view(orthographic).within(Some(HalfSpace { axis, at: 0.0, side }));
+            let image = gpu.shot("section", &list);
+            let seen = |x: u32, y: u32| image.get_pixel(x, y).0 != list.background;
+            // Left and right of the middle; above and below.
+            let [left, right, above, below] = [seen(56, 72), seen(72, 72), seen(64, 56), seen(64, 72)];
+            let expected = match (axis, side) {
+                (Axis::X, Side::Below) => (true, false),
+                (Axis::X, Side::Above) => (false, true),
+                _ => (true, true),
+            };
+            assert_eq!((left, right), expected, "{axis:?} {side:?}, scale {scale}");
+            assert!(axis == Axis::X || (below && !above));
+        }
+    }
+    // A plane between the walls leaves the one behind, and its depth.
+    let mut list = list(128, Base::Raster(raster(geometry())));
+    list.view = list.view.within(Some(HalfSpace { axis: Axis::Z, at: 0.0, side: Side::Below }));
+    list.overlay = overlay(vec![boxed([-0.2 * scale, -0.1 * scale, 0.0], [0.2 * scale, -0.1 * scale, 0.0])]);
+    list.hidden_lines = false;
+    let image = gpu.shot("section_between", &list);
+    assert!(image.pixels().any(|p| p.0[0] > 170 && p.0[2] < 100), "nothing is before the line any more");
 }
 
 #[test]
