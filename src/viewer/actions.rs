@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
+use super::panels::fitting::volume_name;
 use super::panels::toolbar;
 use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, ThemeChoice, Workspace};
 use super::state::State;
@@ -241,6 +242,15 @@ fn structure(list: &mut List, state: &State) {
         list.add(format!("Select: {}", rank.name()), Command::SelectRow(row.unwrap_or(0))).if_possible(row.is_some());
     }
     list.add("Open all of the tree", Command::OpenBelow(0)).if_possible(outline.is_some());
+    let free = !state.is_measuring() && !state.is_checking() && state.building.is_none();
+    let fits = state.fittable().is_some() && free;
+    list.add("Compare bounding volumes of the selected node", Command::FitVolumes).if_possible(fits);
+    for row in state.fitting().iter().flat_map(|(fitting, _)| &fitting.rows) {
+        let name = format!("Draw around the node: {}", volume_name(row.id));
+        list.add(name, Command::DrawVolume(Some(row.id))).if_possible(state.fits.drawn != Some(row.id));
+    }
+    let drawn = state.fits.drawn.is_some();
+    list.add("Draw no volume around the node", Command::DrawVolume(None)).if_possible(drawn);
     let hide = !state.settings.hide_outcome;
     list.add(if hide { "Hide outcomes" } else { "Show outcomes" }, Command::HideOutcome(hide));
 }

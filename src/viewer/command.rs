@@ -63,6 +63,12 @@ pub enum Command {
     CloseTree,
     /// Try a plane in the selected node: across which axis, and where from 0 to 1.
     TryPlane(Option<(Axis, f64)>),
+    /// Compare bounding volumes around the selected node.
+    FitVolumes,
+    /// Stop that.
+    CancelFitVolumes,
+    /// Draw a kind of them around it, or none.
+    DrawVolume(Option<&'static str>),
     /// Look why rays of this view are slow.
     FindCauses,
     /// Stop that.

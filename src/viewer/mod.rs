@@ -34,6 +34,7 @@ pub mod theme;
 mod timings;
 pub mod tradeoffs;
 pub mod tree;
+mod wires;
 mod workers;
 pub mod workspace_file;
 

@@ -1,4 +1,4 @@
-//! Which boxes and planes of a structure are drawn: worked out in the background for the present
+//! Which cells and planes of a structure are drawn: worked out in the background for the present
 //! view, since a tree has more cells than any screen shows.
 
 use std::cmp::Reverse;
@@ -6,12 +6,13 @@ use std::ops::ControlFlow;
 
 use super::gpu::{BoxInstance, Overlay, Ruler, View};
 use super::settings::{BoxColor, OverlaySettings};
-use super::theme;
+use super::{theme, wires};
 use crate::accel::Accel;
-use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Split, bounds_in_scene, walk_below};
+use crate::accel::cell::{Cell, CellKind, Descend, Form, Layout, Level, Shape, Split, bounds_in_scene, walk_below};
 use crate::accel::outline::{Outline, Row};
 use crate::geometry::{Aabb, Axis};
 use crate::task::{Cancel, Cancelled};
+use glam::DVec3;
 
 /// What an overlay is made for.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +23,7 @@ pub struct Wanted {
     pub view: View,
     /// The viewport in pixels.
     pub size_px: [u32; 2],
-    /// The most boxes that are drawn fluently.
+    /// The most boxes that are drawn fluently; of other forms so many that they have no more edges.
     pub limit: usize,
     /// Below which cell alone, with its row.
     pub top: Option<(Cell, u32)>,
@@ -35,12 +36,14 @@ pub struct Wanted {
 pub struct Collected {
     /// For the GPU; its generation is not set.
     pub overlay: Overlay,
-    /// Boxes and planes that are drawn.
+    /// Cells and planes that are drawn.
     pub shown: usize,
-    /// Boxes and planes that match the settings in and out of view, as far as they were counted.
+    /// Cells and planes that match the settings in and out of view, as far as they were counted.
     pub total: usize,
     /// Some lie outside the view with all that is below them, and were not counted.
     pub more: bool,
+    /// Some of them are no boxes.
+    pub other_forms: bool,
     /// What colours go from and to, if they do not stand for depths.
     pub range: Option<[f32; 2]>,
 }
@@ -52,14 +55,17 @@ const ROOM: usize = if cfg!(test) { 1 << 8 } else { 1 << 16 };
 /// Cells looked at between two looks at the cancel flag.
 const CELLS_PER_CHECK: u64 = 4096;
 
-/// A box or plane that is in view, and how large it is there.
+/// Shapes made between two looks at the cancel flag.
+const SHAPES_PER_CHECK: usize = 256;
+/// Edges of a box.
+const BOX_EDGES: usize = 12;
+/// The most edges of what is no box: to make them takes longer than to draw them.
+const MOST_EDGES: usize = 1 << 18;
+
+/// A cell or its plane that is in view, and how large it is there.
 struct Found {
     px: f32,
-    depth: u32,
-    /// In the space of its level.
-    bounds: Aabb,
-    /// Which that is, as of [`crate::accel::CellId`].
-    instance: u32,
+    cell: Cell,
     plane: bool,
     /// What its colour stands for.
     value: f32,
@@ -69,9 +75,12 @@ struct Found {
 
 impl Found {
     fn new(cell: &Cell, px: f32) -> Self {
-        let (instance, bounds) = (cell.id.instance, *cell.shape.bounds());
-        let rank = scatter(cell.id.node ^ scatter(instance));
-        Self { px, depth: cell.depth, bounds, instance, plane: false, value: cell.depth as f32, rank }
+        let rank = scatter(cell.id.node ^ scatter(cell.id.instance));
+        Self { px, cell: *cell, plane: false, value: cell.depth as f32, rank }
+    }
+
+    fn is_of_box(&self) -> bool {
+        matches!(self.cell.shape, Shape::Box(_))
     }
 
     fn order(&self) -> (Reverse<u32>, u32, bool) {
@@ -93,6 +102,37 @@ fn scatter(node: u32) -> u32 {
     let x = (node ^ node >> 16).wrapping_mul(0x85EB_CA6B);
     let x = (x ^ x >> 13).wrapping_mul(0xC2B2_AE35);
     x ^ x >> 16
+}
+
+/// What is drawn of a cell or its plane, in the space of its level.
+enum Drawn {
+    Cell(Form),
+    /// A flat box.
+    Plane(Aabb),
+    /// A plane within a cell of any form.
+    Polygon(Vec<DVec3>),
+}
+
+impl Drawn {
+    fn of(found: &Found, accel: &dyn Accel) -> Option<Self> {
+        let (cell, form) = (&found.cell, accel.form(&found.cell));
+        if !found.plane {
+            return Some(Self::Cell(form));
+        }
+        match (form, cell.split?) {
+            (Form::Box(bounds), Split::Axis { axis, pos }) => Some(Self::Plane(plane_in(&bounds, axis, pos))),
+            (form, split) => Some(Self::Polygon(form.section(&split))).filter(|drawn| drawn.edges(0) > 0),
+        }
+    }
+
+    /// How many edges it has, with circles of so many sides.
+    fn edges(&self, sides: usize) -> usize {
+        match self {
+            Self::Cell(form) => wires::line_count(form, sides),
+            Self::Plane(_) => BOX_EDGES,
+            Self::Polygon(corners) => corners.len(),
+        }
+    }
 }
 
 struct Collector<'a> {
@@ -133,7 +173,7 @@ pub fn collect(accel: &dyn Accel, outline: Option<&Outline>, wanted: &Wanted, ca
         None => walk_below(accel, top, &mut |cell| visit(cell, None)),
     }
     stopped?;
-    Ok(collector.finish(accel))
+    collector.finish(accel, cancel)
 }
 
 impl Collector<'_> {
@@ -152,14 +192,11 @@ impl Collector<'_> {
                 self.keep(Found { value, ..Found::new(cell, px) });
             }
         }
-        if let Some(Split::Axis { axis, pos }) = cell.split
-            && s.planes
-            && (s.from_depth..=s.depth).contains(&cell.depth)
-        {
+        if cell.split.is_some() && s.planes && (s.from_depth..=s.depth).contains(&cell.depth) {
             self.total += 1;
             if px >= LEAST_PX {
-                let (bounds, value) = (plane_in(cell.shape.bounds(), axis, pos), value(s.color, cell, row));
-                self.keep(Found { bounds, value, plane: true, ..Found::new(cell, px) });
+                let value = value(s.color, cell, row);
+                self.keep(Found { value, plane: true, ..Found::new(cell, px) });
             }
         }
         let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
@@ -211,28 +248,69 @@ impl Collector<'_> {
         s.slice == 0 || at.get(s.slice_axis).is_none_or(|layer| layer + 1 == s.slice)
     }
 
+    /// What is drawn of those that were found: the first of them, as long as they have no more edges than are drawn fluently.
+    fn shapes(&mut self, accel: &dyn Accel, cancel: &Cancel) -> Result<Vec<(Found, Drawn)>, Cancelled> {
+        let boxes = self.found.iter().all(Found::is_of_box);
+        if !boxes {
+            self.found.sort_by_key(Found::order);
+        }
+        let mut left = if boxes { usize::MAX } else { self.limit().saturating_mul(BOX_EDGES).min(MOST_EDGES) };
+        let mut shapes = Vec::with_capacity(self.found.len());
+        for (i, found) in std::mem::take(&mut self.found).into_iter().enumerate() {
+            if i.is_multiple_of(SHAPES_PER_CHECK) {
+                cancel.check()?;
+            }
+            let Some(drawn) = Drawn::of(&found, accel) else { continue };
+            let edges = drawn.edges(wires::sides(found.px));
+            if edges > left && !shapes.is_empty() {
+                break;
+            }
+            left = left.saturating_sub(edges);
+            shapes.push((found, drawn));
+        }
+        Ok(shapes)
+    }
+
     /// The largest on the screen, as many as are drawn fluently, of those about as large some from
     /// everywhere; deeper levels over higher ones.
-    fn finish(mut self, accel: &dyn Accel) -> Collected {
+    fn finish(mut self, accel: &dyn Accel, cancel: &Cancel) -> Result<Collected, Cancelled> {
         self.leave_the_first();
-        self.found.sort_by_key(|f| f.depth);
-        let depths = self.found.iter().map(|f| f.depth);
+        let mut shapes = self.shapes(accel, cancel)?;
+        shapes.sort_by_key(|(found, _)| found.cell.depth);
+        let depths = shapes.iter().map(|(found, _)| found.cell.depth);
         let shown = depths.clone().min().unwrap_or(0)..=depths.max().unwrap_or(0);
         let by_depth = self.wanted.settings.color == BoxColor::Depth;
-        let values = self.found.iter().map(|f| f.value).filter(|value| value.is_finite());
+        let values = shapes.iter().map(|(found, _)| found.value).filter(|value| value.is_finite());
         let [low, high] = values.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
         let mut overlay = Overlay::default();
-        for f in &self.found {
+        for (found, drawn) in &shapes {
             let color = match () {
-                () if by_depth => theme::depth_color(f.depth, &shown),
-                () if f.value.is_finite() => theme::amount_color(f.value, [low, high]),
+                () if by_depth => theme::depth_color(found.cell.depth, &shown),
+                () if found.value.is_finite() => theme::amount_color(found.value, [low, high]),
                 () => theme::UNKNOWN,
             };
-            let instance = placed(accel, f.instance, &f.bounds, color.to_array());
-            if f.plane { overlay.planes.push(instance) } else { overlay.boxes.push(instance) }
+            self.draw(accel, found, drawn, color.to_array(), &mut overlay);
         }
+        let other_forms = !overlay.lines.is_empty();
         let range = (!by_depth && low <= high).then_some([low, high]);
-        Collected { overlay, shown: self.found.len(), total: self.total, more: self.more, range }
+        Ok(Collected { overlay, shown: shapes.len(), total: self.total, more: self.more, other_forms, range })
+    }
+
+    fn draw(&self, accel: &dyn Accel, found: &Found, drawn: &Drawn, color: [u8; 4], overlay: &mut Overlay) {
+        let instance = found.cell.id.instance;
+        match drawn {
+            Drawn::Cell(form) => {
+                let wires = wires::of_form(accel, instance, form, (&self.wanted.view, wires::sides(found.px)), color);
+                overlay.boxes.extend(wires.boxed);
+                overlay.lines.extend(wires.lines);
+            }
+            Drawn::Plane(bounds) => overlay.planes.push(placed(accel, instance, bounds, color)),
+            Drawn::Polygon(corners) => {
+                let [fills, lines] = wires::of_polygon(accel, instance, corners, color);
+                overlay.fills.extend(fills);
+                overlay.lines.extend(lines);
+            }
+        }
     }
 }
 
@@ -266,7 +344,7 @@ pub fn plane_in(cell: &Aabb, axis: Axis, pos: f32) -> Aabb {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accel::{BuildCx, registry};
+    use crate::accel::{BuildCx, CellId, registry};
     use crate::geometry::tri::TestKind;
     use crate::scene::{Camera, Geometry, LoadCx, Projection, open};
     use glam::Vec3;
@@ -306,7 +384,14 @@ mod tests {
 
     #[test]
     fn the_larger_go_first() {
-        let cell = |px: f32, rank: u32| Found { px, depth: 0, bounds: Aabb::EMPTY, instance: 0, plane: false, value: 0.0, rank };
+        let root = Cell {
+            id: CellId { instance: 0, node: 0 },
+            depth: 0,
+            shape: Shape::Box(Aabb::EMPTY),
+            split: None,
+            kind: CellKind::Void,
+        };
+        let cell = |px: f32, rank: u32| Found { rank, ..Found::new(&root, px) };
         assert!(cell(20.0, 9).order() < cell(9.0, 1).order() && cell(10.0, 9).order() > cell(11.0, 1).order());
         assert_eq!(size_class(64.0_f32.next_down()), size_class(64.0_f32.next_up()));
     }

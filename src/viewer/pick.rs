@@ -3,8 +3,6 @@
 use std::ops::ControlFlow;
 
 use super::format;
-use super::gpu::BoxInstance;
-use super::overlay::placed;
 use crate::accel::cell::{Cell, CellId, Descend, bounds_in_scene, walk};
 use crate::accel::outline::{Outline, cells_along};
 use crate::accel::probe::Counts;
@@ -21,8 +19,6 @@ pub struct Picked {
     pub text: String,
     /// The cells that hold the point, from the root to the leaf.
     pub path: Vec<Cell>,
-    /// Their boxes, in the scene's scaled space.
-    pub boxes: Vec<BoxInstance>,
     /// Which of them is selected.
     pub level: usize,
 }
@@ -35,7 +31,7 @@ impl Picked {
         let kind = if facts.is_leaf() { "Leaf" } else { "Node" };
         let (references, share) = (format::count(facts.references.into()), format::share(facts.share));
         let text = format!("{kind} {} at depth {}: {references} triangles, {share} of the SAH cost", facts.id.node, facts.depth);
-        Self::at_end(accel, path, text)
+        Self::at_end(path, text)
     }
 
     /// A cell by those from the root to it.
@@ -46,13 +42,12 @@ impl Picked {
             format!("{kind} {} at depth {}", cell.id.node, cell.depth)
         });
         let text = text.unwrap_or_else(|| "The cell that was selected is not there any more".to_owned());
-        Self::at_end(accel, path, text)
+        Self::at_end(path, text)
     }
 
     /// The last of cells within each other.
-    fn at_end(accel: &dyn Accel, path: Vec<Cell>, text: String) -> Self {
-        let place = |cell: &Cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4]);
-        Self { text, level: path.len().saturating_sub(1), boxes: path.iter().map(place).collect(), path }
+    const fn at_end(path: Vec<Cell>, text: String) -> Self {
+        Self { text, level: path.len().saturating_sub(1), path }
     }
 
     /// The numbers of the cells from the root to the selected one.
@@ -63,11 +58,6 @@ impl Picked {
     /// The selected cell.
     pub fn selected(&self) -> Option<&Cell> {
         self.path.get(self.level)
-    }
-
-    /// Its box, in the scaled space.
-    pub fn selected_box(&self) -> Option<BoxInstance> {
-        self.boxes.get(self.level).copied()
     }
 }
 
@@ -84,7 +74,7 @@ pub fn pick(scene: &Scene, accel: &dyn Accel, ray: &Ray, cancel: &Cancel) -> Res
     let depth = path.last().map(|leaf| format!(", leaf at depth {}", leaf.depth)).unwrap_or_default();
     let work = format!("{} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
     let text = format!("Triangle {}{name}{depth}: this ray took {work}", format::count(u64::from(hit.primitive)));
-    Ok(Some(Picked::at_end(accel, path, text)))
+    Ok(Some(Picked::at_end(path, text)))
 }
 
 /// The cells from the root to the leaf that holds the triangle and the point; empty if none does.

@@ -49,6 +49,8 @@ pub const RAY_HALO: f32 = 3.0;
 pub const FAINT: f32 = 0.3;
 /// A plane that somebody tries.
 pub const TRIED: Color32 = Color32::from_rgb(255, 255, 255);
+/// A bounding volume that somebody compares with others.
+pub const COMPARED: Color32 = Color32::from_rgb(255, 140, 105);
 /// A box of which an amount is not known.
 pub const UNKNOWN: Color32 = Color32::from_rgb(128, 128, 128);
 /// The width and height of a page of text.

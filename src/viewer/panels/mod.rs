@@ -9,6 +9,7 @@ pub mod decision;
 pub mod error_side;
 pub mod errors;
 pub mod findings;
+pub mod fitting;
 pub mod help;
 pub mod long_list;
 pub mod menu;

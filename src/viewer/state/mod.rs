@@ -9,6 +9,7 @@ mod dialog;
 mod erring;
 mod exploring;
 mod finished;
+mod fitting;
 mod following;
 mod keeping;
 mod refresh;
@@ -17,6 +18,7 @@ mod trading;
 
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
+pub use fitting::Fits;
 use saving::Saving;
 
 use std::path::PathBuf;
@@ -95,6 +97,8 @@ pub struct State {
     pub tree: Tree,
     /// Why rays are slow in the shown structure.
     pub causes: Causes,
+    /// Bounding volumes around the selected node.
+    pub fits: Fits,
     /// The second structure of a split picture.
     pub beside: Beside,
     /// What its renderer was last asked for.
@@ -248,6 +252,7 @@ impl State {
             tradeoffs: Tradeoffs::default(),
             tree: Tree::default(),
             causes: Causes::default(),
+            fits: Fits::default(),
             beside: Beside::default(),
             requested_beside: None,
             trace_pool: pool.clone(),
@@ -314,6 +319,7 @@ impl State {
         self.measuring.is_some()
             || self.needing.is_some()
             || self.causes.running.is_some()
+            || self.fits.running.is_some()
             || self.errors.making.is_some()
             || self.tradeoffs.running.is_some()
     }
@@ -410,6 +416,9 @@ impl State {
             Command::OpenBelow(row) => self.open_below(row),
             Command::CloseTree => self.tree.close_all(),
             Command::TryPlane(plane) => self.try_plane(plane),
+            Command::FitVolumes => self.fit_volumes(),
+            Command::CancelFitVolumes => self.fits.running = None,
+            Command::DrawVolume(id) => self.draw_volume(id),
             Command::FindCauses => self.find_causes(),
             Command::CancelCauses => self.causes.running = None,
             Command::ShowCause(row) => self.show_cause(row),
@@ -601,6 +610,7 @@ impl State {
         self.shared.give_back(self.tree.outline.take()); // it may be large
         self.tree.clear();
         self.causes = Causes::default();
+        self.fits = Fits::default();
         self.rays.clear();
         self.shown = Some(built);
         if self.settings.workspace == Workspace::Ray {
@@ -658,6 +668,7 @@ impl State {
         self.advance_load();
         self.advance_build();
         self.advance_causes();
+        self.advance_fitting();
         self.advance_outline();
         self.advance_following();
         self.advance_picking();

@@ -104,8 +104,8 @@ impl State {
                 Outcome::Done(Ok(mut collected)) => {
                     self.generation += 1;
                     let overlay = std::mem::take(&mut collected.overlay);
-                    let (tried, selected) = (self.tried_plane(), self.lit_box());
-                    self.overlay = Some(Arc::new(Overlay { generation: self.generation, selected, tried, ..overlay }));
+                    let overlay = self.lit(Overlay { generation: self.generation, ..overlay });
+                    self.overlay = Some(Arc::new(overlay));
                     self.collected = collected;
                     self.collected_for = Some((wanted, key));
                 }
