@@ -61,6 +61,10 @@ pub struct Args {
     /// With that, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
     #[arg(long, value_name = "AXIS,PLACE", value_parser = plane, requires = "select")]
     pub try_plane: Option<(Axis, f64)>,
+    /// With that, compare bounding volumes around the cell and draw one of them: aabb, sphere, obb, kdop8, kdop14, kdop18, kdop26
+    /// or hull.
+    #[arg(long, value_name = "KIND", value_parser = volume, requires = "select")]
+    pub fit: Option<&'static str>,
     /// Begin in the Ray workspace; with --screenshot, follow the ray of that place first: -1,-1 is the lower left corner of the
     /// view, 1,1 the upper right.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with_all = ["select", "measure", "check", "errors"])]
@@ -101,6 +105,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         errors: args.errors.and_then(|plot| plot.parse().ok()),
         select: args.select,
         try_plane: args.try_plane,
+        fit: args.fit,
         follow: args.follow,
         beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),
         pace: args.pace,
@@ -121,6 +126,12 @@ pub fn run(_: Args) -> Result<(), Failure> {
     Err(Failure::Other(anyhow::anyhow!(
         "this build has no window; the commands scenes, stats, compare, render, rays and trace work. See 'boxwood --help'"
     )))
+}
+
+/// A kind of bounding volume that is compared.
+fn volume(text: &str) -> Result<&'static str, String> {
+    let known = crate::lab::fitted_kinds().find(|kind| *kind == text);
+    known.ok_or_else(|| format!("there is no such volume: use {}", crate::lab::fitted_kinds().collect::<Vec<_>>().join(", ")))
 }
 
 /// `x,0.4`: a plane across an axis, and where.

@@ -144,6 +144,11 @@ fn kinds() -> impl Iterator<Item = &'static Kind> {
     KINDS.iter().filter(|kind| kind.id != "kdop6")
 }
 
+/// Their names, in the order of the rows.
+pub fn fitted_kinds() -> impl Iterator<Item = &'static str> {
+    kinds().map(|kind| kind.id)
+}
+
 /// The references in a cell and below it, in the order of a walk, so that neighbours are near each other.
 fn triangles_of(accel: &dyn Accel, cell: &Cell, cancel: &Cancel) -> Result<Vec<PrimRef>, Cancelled> {
     let (mut order, mut looked, mut stopped) = (Vec::new(), 0usize, Ok(()));

@@ -6,8 +6,9 @@ use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
 use super::panels::fitting::volume_name;
+use super::panels::overlay::has_levels;
 use super::panels::toolbar;
-use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, ThemeChoice, Workspace};
+use super::settings::{BoxColor, Levels, Navigation, OverlaySettings, SCALE, ThemeChoice, Workspace};
 use super::state::State;
 use super::tradeoffs::Plot;
 use crate::accel::outline::Rank;
@@ -218,6 +219,11 @@ fn boxes(list: &mut List, state: &State) {
         let single = now.from_depth == now.depth;
         let overlay = OverlaySettings { depth, from_depth: if single { depth } else { now.from_depth.min(depth) }, ..now };
         list.add(name, Command::Overlay(overlay)).key(key).if_possible(overlay != now && state.shown.is_some());
+    }
+    for levels in Levels::ALL {
+        let overlay = OverlaySettings { levels, ..now };
+        let possible = overlay != now && has_levels(state);
+        list.add(format!("Levels drawn: {}", levels.label()), Command::Overlay(overlay)).if_possible(possible);
     }
     for color in BoxColor::ALL {
         let overlay = OverlaySettings { color, ..now };

@@ -42,6 +42,8 @@ pub struct ViewerOptions {
     pub select: Option<Rank>,
     /// With that, try a plane across an axis of it, at a place from 0 to 1.
     pub try_plane: Option<(Axis, f64)>,
+    /// With that, compare bounding volumes around it, and draw one of that kind.
+    pub fit: Option<&'static str>,
     /// Begin in the Ray workspace; with `screenshot`, follow the ray of that place first: (-1, -1) is the lower left corner of
     /// the view, (1, 1) the upper right.
     pub follow: Option<[f32; 2]>,

@@ -1,18 +1,21 @@
 //! Which cells and planes of a structure are drawn: worked out in the background for the present
 //! view, since a tree has more cells than any screen shows.
 
-use std::cmp::Reverse;
+mod found;
+#[cfg(test)]
+mod tests;
+
 use std::ops::ControlFlow;
 
 use super::gpu::{BoxInstance, Overlay, Ruler, View};
-use super::settings::{BoxColor, OverlaySettings};
+use super::settings::{BoxColor, Levels, OverlaySettings};
 use super::{theme, wires};
 use crate::accel::Accel;
-use crate::accel::cell::{Cell, CellKind, Descend, Form, Layout, Level, Shape, Split, bounds_in_scene, walk_below};
+use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, bounds_in_scene, walk_below};
 use crate::accel::outline::{Outline, Row};
 use crate::geometry::{Aabb, Axis};
 use crate::task::{Cancel, Cancelled};
-use glam::DVec3;
+use found::{BOX_EDGES, Drawn, Found};
 
 /// What an overlay is made for.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +30,8 @@ pub struct Wanted {
     pub limit: usize,
     /// Below which cell alone, with its row.
     pub top: Option<(Cell, u32)>,
+    /// The root of the lower level that it is in, if it is: which, and its depth.
+    pub root: Option<(u32, u32)>,
     /// The rows of cells are known, for colours that need them.
     pub numbered: bool,
 }
@@ -54,92 +59,20 @@ const LEAST_PX: f32 = 1.0;
 const ROOM: usize = if cfg!(test) { 1 << 8 } else { 1 << 16 };
 /// Cells looked at between two looks at the cancel flag.
 const CELLS_PER_CHECK: u64 = 4096;
-
 /// Shapes made between two looks at the cancel flag.
 const SHAPES_PER_CHECK: usize = 256;
-/// Edges of a box.
-const BOX_EDGES: usize = 12;
 /// The most edges of what is no box: to make them takes longer than to draw them.
 const MOST_EDGES: usize = 1 << 18;
-
-/// A cell or its plane that is in view, and how large it is there.
-struct Found {
-    px: f32,
-    cell: Cell,
-    plane: bool,
-    /// What its colour stands for.
-    value: f32,
-    /// Who goes first among those that are about as large.
-    rank: u32,
-}
-
-impl Found {
-    fn new(cell: &Cell, px: f32) -> Self {
-        let rank = scatter(cell.id.node ^ scatter(cell.id.instance));
-        Self { px, cell: *cell, plane: false, value: cell.depth as f32, rank }
-    }
-
-    fn is_of_box(&self) -> bool {
-        matches!(self.cell.shape, Shape::Box(_))
-    }
-
-    fn order(&self) -> (Reverse<u32>, u32, bool) {
-        (Reverse(size_class(self.px)), self.rank, self.plane)
-    }
-}
-
-/// Sizes that differ by less than a factor of two are about the same: by size alone the cells of a
-/// grid would all be taken from the corner that is nearest, or that rounding favours.
-fn size_class(px: f32) -> u32 {
-    // The binary exponent. Whole pixels are common sizes, so no limit of a class falls on one.
-    (px * 1.3).to_bits() >> 23
-}
-
-/// Numbers cells anew without any pattern, so that the first so many of neighbours are spread evenly,
-/// and do not look like a structure. They stay the same while the view turns. (The finaliser of
-/// MurmurHash3, Appleby 2011: every bit of the number changes half of the bits.)
-fn scatter(node: u32) -> u32 {
-    let x = (node ^ node >> 16).wrapping_mul(0x85EB_CA6B);
-    let x = (x ^ x >> 13).wrapping_mul(0xC2B2_AE35);
-    x ^ x >> 16
-}
-
-/// What is drawn of a cell or its plane, in the space of its level.
-enum Drawn {
-    Cell(Form),
-    /// A flat box.
-    Plane(Aabb),
-    /// A plane within a cell of any form.
-    Polygon(Vec<DVec3>),
-}
-
-impl Drawn {
-    fn of(found: &Found, accel: &dyn Accel) -> Option<Self> {
-        let (cell, form) = (&found.cell, accel.form(&found.cell));
-        if !found.plane {
-            return Some(Self::Cell(form));
-        }
-        match (form, cell.split?) {
-            (Form::Box(bounds), Split::Axis { axis, pos }) => Some(Self::Plane(plane_in(&bounds, axis, pos))),
-            (form, split) => Some(Self::Polygon(form.section(&split))).filter(|drawn| drawn.edges(0) > 0),
-        }
-    }
-
-    /// How many edges it has, with circles of so many sides.
-    fn edges(&self, sides: usize) -> usize {
-        match self {
-            Self::Cell(form) => wires::line_count(form, sides),
-            Self::Plane(_) => BOX_EDGES,
-            Self::Polygon(corners) => corners.len(),
-        }
-    }
-}
 
 struct Collector<'a> {
     wanted: &'a Wanted,
     ruler: Ruler,
     /// Cells along each axis, of a grid.
     resolution: Option<[u32; 3]>,
+    /// Where there are two of them.
+    levels: Levels,
+    /// The lower level that the walk is in, and the depth of its root.
+    root: Option<(u32, u32)>,
     found: Vec<Found>,
     total: usize,
     more: bool,
@@ -153,7 +86,9 @@ struct Collector<'a> {
 pub fn collect(accel: &dyn Accel, outline: Option<&Outline>, wanted: &Wanted, cancel: &Cancel) -> Result<Collected, Cancelled> {
     let resolution = if let Layout::Flat { resolution, .. } = accel.layout() { Some(resolution) } else { None };
     let ruler = Ruler::new(&wanted.view, wanted.size_px);
-    let mut collector = Collector { wanted, ruler, resolution, found: Vec::new(), total: 0, more: false };
+    let levels = if accel.levels().is_some() { wanted.settings.levels } else { Levels::Through };
+    let root = wanted.root;
+    let mut collector = Collector { wanted, ruler, resolution, levels, root, found: Vec::new(), total: 0, more: false };
     let mut looked = 0u64;
     let mut stopped = Ok(());
     let mut visit = |cell: &Cell, row: Option<Row>| {
@@ -179,27 +114,28 @@ pub fn collect(accel: &dyn Accel, outline: Option<&Outline>, wanted: &Wanted, ca
 impl Collector<'_> {
     fn visit(&mut self, accel: &dyn Accel, cell: &Cell, row: Option<Row>) -> Descend {
         let s = &self.wanted.settings;
+        let depth = self.depth_of(cell);
         let bounds = bounds_in_scene(accel, cell);
         let Some(px) = self.ruler.pixels(&bounds) else {
             self.more |= !cell.is_leaf();
-            self.total += usize::from(self.wants_box(cell));
+            self.total += usize::from(self.wants_box(cell, depth));
             return Descend::No;
         };
-        if self.wants_box(cell) {
+        if self.wants_box(cell, depth) {
             self.total += 1;
             if px >= LEAST_PX {
                 let value = value(s.color, cell, row);
-                self.keep(Found { value, ..Found::new(cell, px) });
+                self.keep(Found { value, ..Found::new(cell, depth, px) });
             }
         }
-        if cell.split.is_some() && s.planes && (s.from_depth..=s.depth).contains(&cell.depth) {
+        if cell.split.is_some() && s.planes && (s.from_depth..=s.depth).contains(&depth) {
             self.total += 1;
             if px >= LEAST_PX {
                 let value = value(s.color, cell, row);
-                self.keep(Found { value, plane: true, ..Found::new(cell, px) });
+                self.keep(Found { value, plane: true, ..Found::new(cell, depth, px) });
             }
         }
-        let deeper = s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
+        let deeper = self.wants_deeper(cell, depth);
         if px < LEAST_PX && !cell.is_leaf() && deeper {
             self.more = true;
             return Descend::No;
@@ -228,16 +164,51 @@ impl Collector<'_> {
         }
     }
 
-    fn wants_box(&self, cell: &Cell) -> bool {
+    /// How deep a cell is below the root that depths count from. A walk is in one instance at a time.
+    fn depth_of(&mut self, cell: &Cell) -> u32 {
+        let instance = cell.id.instance;
+        if self.levels == Levels::Through || instance == 0 {
+            return cell.depth;
+        }
+        let root = self.root.filter(|root| root.0 == instance).unwrap_or((instance, cell.depth));
+        self.root = Some(root);
+        cell.depth.saturating_sub(root.1)
+    }
+
+    fn wants_deeper(&self, cell: &Cell, depth: u32) -> bool {
+        let s = &self.wanted.settings;
+        let deeper = s.leaves_only || depth < s.depth || self.resolution.is_some();
+        match (self.levels, cell.id.instance) {
+            (Levels::Both | Levels::Lower, 0) => true,
+            (Levels::Upper, 1..) => false,
+            _ => deeper,
+        }
+    }
+
+    fn wants_box(&self, cell: &Cell, depth: u32) -> bool {
         let s = &self.wanted.settings;
         let leaf = cell.is_leaf();
         s.boxes
             && match cell.kind {
                 CellKind::Void | CellKind::Leaf { prims: 0 } if !s.empty_cells => false,
                 _ if self.resolution.is_some() => leaf && self.in_slice(cell),
-                _ if s.leaves_only => leaf,
-                _ => (s.from_depth..=s.depth).contains(&cell.depth),
+                _ => self.wants_of_level(cell, depth),
             }
+    }
+
+    fn wants_of_level(&self, cell: &Cell, depth: u32) -> bool {
+        let s = &self.wanted.settings;
+        let wanted = if s.leaves_only { cell.is_leaf() } else { (s.from_depth..=s.depth).contains(&depth) };
+        let upper = cell.id.instance == 0;
+        // What stands in a place is the root of a lower level.
+        let instance = !upper && depth == 0;
+        match self.levels {
+            Levels::Through => wanted,
+            Levels::Both => instance || (!upper && wanted),
+            Levels::Upper if s.leaves_only => instance,
+            Levels::Upper => upper && wanted,
+            Levels::Lower => !upper && wanted,
+        }
     }
 
     /// Cells of a grid are numbered from 1, x fastest.
@@ -276,8 +247,8 @@ impl Collector<'_> {
     fn finish(mut self, accel: &dyn Accel, cancel: &Cancel) -> Result<Collected, Cancelled> {
         self.leave_the_first();
         let mut shapes = self.shapes(accel, cancel)?;
-        shapes.sort_by_key(|(found, _)| found.cell.depth);
-        let depths = shapes.iter().map(|(found, _)| found.cell.depth);
+        shapes.sort_by_key(|(found, _)| found.depth);
+        let depths = shapes.iter().map(|(found, _)| found.depth);
         let shown = depths.clone().min().unwrap_or(0)..=depths.max().unwrap_or(0);
         let by_depth = self.wanted.settings.color == BoxColor::Depth;
         let values = shapes.iter().map(|(found, _)| found.value).filter(|value| value.is_finite());
@@ -285,7 +256,7 @@ impl Collector<'_> {
         let mut overlay = Overlay::default();
         for (found, drawn) in &shapes {
             let color = match () {
-                () if by_depth => theme::depth_color(found.cell.depth, &shown),
+                () if by_depth => theme::depth_color(found.depth, &shown),
                 () if found.value.is_finite() => theme::amount_color(found.value, [low, high]),
                 () => theme::UNKNOWN,
             };
@@ -339,60 +310,4 @@ pub fn plane_in(cell: &Aabb, axis: Axis, pos: f32) -> Aabb {
     plane.min[axis.index()] = pos;
     plane.max[axis.index()] = pos;
     plane
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::accel::{BuildCx, CellId, registry};
-    use crate::geometry::tri::TestKind;
-    use crate::scene::{Camera, Geometry, LoadCx, Projection, open};
-    use glam::Vec3;
-    use std::sync::Arc;
-
-    /// At most `limit` cells of a grid of many, all of it in view.
-    fn cells_of_a_grid(projection: Projection, limit: usize) -> (Collected, Aabb) {
-        let cx = LoadCx::unattended();
-        let scene = open("builtin:soup?triangles=20000", &cx).expect("built in");
-        let geometry = Arc::new(Geometry::new(&scene, &cx).expect("fits"));
-        let entry = registry::find("grid").expect("registered");
-        let accel = entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &BuildCx::unattended(1)).expect("builds");
-        let settings = OverlaySettings { boxes: true, planes: false, empty_cells: true, slice: 0, ..OverlaySettings::default() };
-        let camera = Camera { eye: Vec3::new(0.3, 0.4, 1.0), target: Vec3::ZERO, up: Vec3::Y, projection };
-        let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
-        let wanted = Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false };
-        (collect(accel.as_ref(), None, &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
-    }
-
-    #[test]
-    fn a_few_cells_of_a_grid_are_from_everywhere() {
-        const LIMIT: usize = 1000;
-        for projection in [Projection::Orthographic { height: 1.0 }, Projection::Perspective { fov_y: 0.1 }] {
-            let (collected, bounds) = cells_of_a_grid(projection, LIMIT);
-            assert_eq!(collected.shown, LIMIT);
-            assert!(collected.total > 10 * LIMIT, "{}", collected.total);
-            // Of four by four by four parts, how many cells are in each.
-            let mut parts = [0; 64];
-            for cell in &collected.overlay.boxes {
-                let at = (cell.at(Vec3::splat(0.5)) - bounds.min) / bounds.size();
-                let [x, y, z] = at.to_array().map(|x| (x * 4.0) as usize);
-                parts[x + 4 * y + 16 * z] += 1;
-            }
-            assert!(parts.iter().all(|n| (4..=36).contains(n)), "{projection:?}: about 16 in each: {parts:?}");
-        }
-    }
-
-    #[test]
-    fn the_larger_go_first() {
-        let root = Cell {
-            id: CellId { instance: 0, node: 0 },
-            depth: 0,
-            shape: Shape::Box(Aabb::EMPTY),
-            split: None,
-            kind: CellKind::Void,
-        };
-        let cell = |px: f32, rank: u32| Found { rank, ..Found::new(&root, px) };
-        assert!(cell(20.0, 9).order() < cell(9.0, 1).order() && cell(10.0, 9).order() > cell(11.0, 1).order());
-        assert_eq!(size_class(64.0_f32.next_down()), size_class(64.0_f32.next_up()));
-    }
 }

@@ -55,6 +55,13 @@ impl Picked {
         self.path.iter().take(self.level + 1).map(|cell| cell.id).collect()
     }
 
+    /// The root of the lower level that the selected cell is in, if it is in one: which level (see [`CellId`]), and its depth.
+    pub fn lower_root(&self) -> Option<(u32, u32)> {
+        let level = self.selected()?.id.instance;
+        let root = self.path.iter().find(|cell| cell.id.instance == level && level != 0)?;
+        Some((level, root.depth))
+    }
+
     /// The selected cell.
     pub fn selected(&self) -> Option<&Cell> {
         self.path.get(self.level)

@@ -32,6 +32,8 @@ pub struct Screenshot {
     /// The cell that is still to be selected, and the plane to be tried in it.
     select: Option<Rank>,
     try_plane: Option<(Axis, f64)>,
+    /// The volumes that are still to be compared around it, and the one to be drawn.
+    fit: Vec<Command>,
     /// What is still to be done in the Ray workspace.
     follow: Vec<Command>,
     rehearsal: Option<Rehearsal>,
@@ -78,6 +80,7 @@ impl Screenshot {
             errors: options.errors.map(|plot| (plot, 0)),
             select: options.select,
             try_plane: options.try_plane,
+            fit: options.fit.map_or_else(Vec::new, |kind| vec![Command::FitVolumes, Command::DrawVolume(Some(kind))]),
             follow: follow(options),
             rehearsal: options.pace.then(Rehearsal::default),
             endurance: options.endure.then(Endurance::default),
@@ -114,6 +117,7 @@ impl Screenshot {
             Stage::Settling if settled && self.try_plane.is_some() => {
                 commands.push(Command::TryPlane(self.try_plane.take()));
             }
+            Stage::Settling if settled && !self.fit.is_empty() => commands.push(self.fit.remove(0)),
             Stage::Settling if settled && !self.follow.is_empty() => {
                 commands.push(match self.follow.remove(0) {
                     // The middle of the way says more than its start.

@@ -29,3 +29,4 @@ mod presenting;
 mod saving;
 mod settings;
 mod structures;
+mod volumes;

@@ -69,7 +69,8 @@ fn showing(state: &State) -> String {
         format!(", {}: {low} dark to {high} bright", color.name())
     });
     let (shown, total) = (format::count(c.shown as u64), format::count(c.total as u64));
-    format!("Showing {shown} of {total}{beyond} boxes{}", colors.unwrap_or_default())
+    let what = if c.other_forms { "shapes" } else { "boxes" };
+    format!("Showing {shown} of {total}{beyond} {what}{}", colors.unwrap_or_default())
 }
 
 /// What of a curve of errors is on the screen.

@@ -117,13 +117,15 @@ impl State {
         let settings = self.settings.overlay;
         let selected = self.picked.as_ref().and_then(Picked::selected).copied();
         let (needs_rows, outline) = (settings.subtree_only || settings.color != BoxColor::Depth, self.tree.outline.clone());
+        let top = selected.zip(self.tree.selected).filter(|_| settings.subtree_only && self.tree.selecting.is_none());
         let wanted = Wanted {
             settings,
             view,
             size_px: self.size_px,
             limit: self.graphics.comfortable_boxes(),
             // A row whose cell is on its way is not that of the selected cell.
-            top: selected.zip(self.tree.selected).filter(|_| settings.subtree_only && self.tree.selecting.is_none()),
+            top,
+            root: top.and_then(|_| self.picked.as_ref()?.lower_root()),
             numbered: needs_rows && outline.is_some(),
         };
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
