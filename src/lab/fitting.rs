@@ -360,11 +360,11 @@ mod tests {
     fn tighter_volumes_let_fewer_rays_in_for_nothing() {
         let job = job("bvh");
         let root = job.accel.root();
-        for cell in [root, child(job.accel.as_ref(), &root)] {
+        for (cell, least) in [(root, 100), (child(job.accel.as_ref(), &root), 5)] {
             let fitting = fit(&job, &cell);
             let row = |id: &str| fitting.rows.iter().find(|row| row.id == id).expect("a row");
             assert_eq!(fitting.rows.len(), KINDS.len() - 1);
-            assert!(fitting.taken == fitting.triangles && fitting.triangles > 100 && fitting.followed > 100);
+            assert!(fitting.taken == fitting.triangles && fitting.triangles > least && fitting.followed > least);
             let [hull, all, corners, aabb] = ["hull", "kdop26", "kdop14", "aabb"].map(row);
             for pair in [[hull, all], [all, corners], [corners, aabb]] {
                 assert!(pair[0].area <= pair[1].area * (1.0 + 1e-5), "{} {}", pair[0].id, pair[1].id);
@@ -372,7 +372,7 @@ mod tests {
             }
             // No volume misses a ray that hits: all let the same rays in that hit.
             let hit = hull.met - hull.in_vain;
-            assert!(hit > 50 && fitting.rows.iter().all(|row| row.met - row.in_vain == hit));
+            assert!(hit > least && fitting.rows.iter().all(|row| row.met - row.in_vain == hit));
             assert!(fitting.rows.iter().all(|row| row.test_ns > 0.0));
         }
     }

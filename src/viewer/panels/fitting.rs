@@ -60,7 +60,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             empty(ui, "Of an earlier view.");
         }
     }
-    if let Some(note) = &state.fits.note {
+    if let Some(note) = state.no_fitting() {
         empty(ui, note);
     }
     if made.is_none_or(|(_, old)| old) {

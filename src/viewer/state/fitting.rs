@@ -24,8 +24,8 @@ pub struct Fits {
     made: Option<(CellId, Camera, Fitting)>,
     /// The kind that is drawn around the node.
     pub drawn: Option<&'static str>,
-    /// Why there is none, in words for the user.
-    pub note: Option<String>,
+    /// Why there is none of the cell that was asked for, in words for the user.
+    note: Option<&'static str>,
 }
 
 impl State {
@@ -40,6 +40,12 @@ impl State {
         let selected = self.picked.as_ref().and_then(Picked::selected)?;
         let (_, camera, fitting) = self.fits.made.as_ref().filter(|made| made.0 == selected.id)?;
         Some((fitting, *camera != self.camera))
+    }
+
+    /// Why there are none around the selected node, if they were asked for.
+    pub fn no_fitting(&self) -> Option<&'static str> {
+        let selected = self.picked.as_ref().and_then(Picked::selected)?;
+        self.fits.note.filter(|_| self.fits.asked.is_some_and(|asked| asked.0 == selected.id))
     }
 
     /// Starts comparing volumes around the selected node.
@@ -68,7 +74,7 @@ impl State {
                 self.fits.made = self.fits.asked.take().map(|(id, camera)| (id, camera, fitting));
                 self.light();
             }
-            Outcome::Done(Ok(None)) => self.fits.note = Some("There are no triangles to bound.".to_owned()),
+            Outcome::Done(Ok(None)) => self.fits.note = Some("It has no triangles to bound."),
             Outcome::Done(Err(_)) => {}
             Outcome::Died => self.fail("Can't compare volumes: fitting them failed. Please report this.".to_owned()),
         }
