@@ -102,13 +102,15 @@ pub fn fit_volumes(
 ) -> Result<Option<Fitting>, Cancelled> {
     let accel = job.accel.as_ref();
     progress.start("triangles", 0);
-    let order = if can_fit(accel, cell) { triangles_of(accel, cell, cancel)? } else { Vec::new() };
-    if order.is_empty() {
+    if !can_fit(accel, cell) {
         return Ok(None);
     }
-    let node = Node::new(accel, cell, &order);
-    let taken = pick(&order, MOST_TRIANGLES);
-    let taken: Vec<PrimRef> = if taken.len() < order.len() { taken } else { order };
+    let mut node = Node::new(accel, cell);
+    let triangles = node.gather(cell, cancel)?;
+    if triangles.is_empty() {
+        return Ok(None);
+    }
+    let taken = pick(&triangles, MOST_TRIANGLES);
     progress.start("fit", kinds().count() as u64);
     let volumes = fitted(node.geometry, &taken, pool, cancel, progress)?;
 
@@ -135,7 +137,7 @@ pub fn fit_volumes(
         }
     };
     let rows = volumes.iter().enumerate().map(row).collect();
-    let (triangles, taken) = (node.members.len(), taken.len().min(node.members.len()));
+    let (triangles, taken) = (triangles.len(), taken.len());
     Ok(Some(Fitting { rows, triangles, taken, rays: rays.len(), followed: followed.len() }))
 }
 
@@ -149,41 +151,48 @@ pub fn fitted_kinds() -> impl Iterator<Item = &'static str> {
     kinds().map(|kind| kind.id)
 }
 
-/// The references in a cell and below it, in the order of a walk, so that neighbours are near each other.
-fn triangles_of(accel: &dyn Accel, cell: &Cell, cancel: &Cancel) -> Result<Vec<PrimRef>, Cancelled> {
-    let (mut order, mut looked, mut stopped) = (Vec::new(), 0usize, Ok(()));
-    walk_below(accel, *cell, &mut |cell| {
-        looked += 1;
-        if looked.is_multiple_of(PER_CHECK) {
-            stopped = cancel.check();
-        }
-        if stopped.is_err() {
-            return ControlFlow::Break(());
-        }
-        if cell.is_leaf() {
-            accel.prims(cell, &mut |prim| order.push(prim));
-        }
-        ControlFlow::Continue(Descend::Yes)
-    });
-    stopped.map(|()| order)
-}
-
 /// The triangles that are asked for, and where they are.
 struct Node<'a> {
     accel: &'a dyn Accel,
     level: Option<Level>,
     /// What the references are of.
     geometry: &'a Geometry,
-    /// Ascending, each once.
-    members: Vec<PrimRef>,
+    /// A bit for each triangle of those.
+    members: Vec<u64>,
 }
 
 impl<'a> Node<'a> {
-    fn new(accel: &'a dyn Accel, cell: &Cell, order: &[PrimRef]) -> Self {
-        let mut members = order.to_vec();
-        members.sort_unstable();
-        members.dedup();
-        Self { accel, level: accel.level(cell.id.instance), geometry: accel.geometry_of(cell.id.instance), members }
+    /// Of no triangles yet.
+    fn new(accel: &'a dyn Accel, cell: &Cell) -> Self {
+        let geometry = accel.geometry_of(cell.id.instance);
+        Self { accel, level: accel.level(cell.id.instance), geometry, members: vec![0; geometry.triangle_count().div_ceil(64)] }
+    }
+
+    /// Takes in the triangles in a cell and below it, and returns them, each once, in the order of a walk: neighbours are near
+    /// each other.
+    fn gather(&mut self, cell: &Cell, cancel: &Cancel) -> Result<Vec<PrimRef>, Cancelled> {
+        let (mut order, mut looked, mut stopped) = (Vec::new(), 0usize, Ok(()));
+        let (accel, members) = (self.accel, &mut self.members);
+        walk_below(accel, *cell, &mut |cell| {
+            looked += 1;
+            if looked.is_multiple_of(PER_CHECK) {
+                stopped = cancel.check();
+            }
+            if stopped.is_err() {
+                return ControlFlow::Break(());
+            }
+            if cell.is_leaf() {
+                accel.prims(cell, &mut |prim| {
+                    let (word, bit) = place(prim);
+                    if members[word] & bit == 0 {
+                        members[word] |= bit;
+                        order.push(prim);
+                    }
+                });
+            }
+            ControlFlow::Continue(Descend::Yes)
+        });
+        stopped.map(|()| order)
     }
 
     /// A world ray in the space of the level; `None` if nothing can be hit there.
@@ -211,8 +220,14 @@ impl Filter for Node<'_> {
             Some(instance) => flat.is_none() && instance == hit.instance,
             None => flat.is_some(),
         };
-        here && self.members.binary_search(&flat.unwrap_or(hit.primitive)).is_ok()
+        let (word, bit) = place(flat.unwrap_or(hit.primitive));
+        here && self.members.get(word).is_some_and(|members| members & bit != 0)
     }
+}
+
+/// The word that a triangle's bit is in, and the bit.
+const fn place(prim: PrimRef) -> (usize, u64) {
+    (prim as usize / 64, 1 << (prim % 64))
 }
 
 /// A kind, and its volume around the triangles.
@@ -386,10 +401,11 @@ mod tests {
         let (bvh, kd) = (of("bvh"), of("kdtree"));
         // Near ties may send a ray on from another triangle.
         let near = |a: usize, b: usize| a.abs_diff(b) <= bvh.followed / 100;
-        for (a, b) in bvh.rows.iter().zip(&kd.rows) {
-            assert!(near(a.met, b.met) && near(a.in_vain, b.in_vain), "{}", a.id);
-            // Areas but for which points hulls and the like were chosen by, which the order of triangles decides.
-            assert!((a.area / b.area - 1.0).abs() < 0.05, "{}: {} {}", a.id, a.area, b.area);
+        // The others are chosen by a few points, and which those are is decided by the order of the triangles.
+        let of_slabs = |row: &&FitRow| row.id == "aabb" || row.id.starts_with("kdop");
+        for (a, b) in bvh.rows.iter().filter(of_slabs).zip(kd.rows.iter().filter(of_slabs)) {
+            assert!(a.id == b.id && a.area == b.area && near(a.met, b.met) && near(a.in_vain, b.in_vain), "{}", a.id);
         }
+        assert_eq!((bvh.triangles, bvh.rays > 4000), (kd.triangles, true));
     }
 }
