@@ -211,8 +211,7 @@ fn samples_are_kept_when_only_what_becomes_of_them_changes() {
     let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
     let budget = Budget::of_mib(64);
     let (job, keep) = (job(&soup(400, 0.3, 7), "bvh", Mode::Path), Some(budget.clone()));
-    let request =
-        Request { job, width: 80, height: 60, max_samples: 9, range: None, tone: Tone::default(), keep };
+    let request = Request { job, width: 80, height: 60, max_samples: 9, range: None, tone: Tone::default(), keep };
     let wait = |number: u64| {
         let start = Instant::now();
         loop {
@@ -246,8 +245,7 @@ fn samples_are_kept_when_only_what_becomes_of_them_changes() {
 fn amounts_come_with_the_picture_if_asked_for_and_keep_the_range_that_suits() {
     let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
     let job = job(&soup(400, 0.3, 7), "bvh", Mode::Nodes);
-    let plain =
-        Request { job, width: 64, height: 48, max_samples: 1, range: None, tone: Tone::default(), keep: None };
+    let plain = Request { job, width: 64, height: 48, max_samples: 1, range: None, tone: Tone::default(), keep: None };
     let wait = |number: u64| {
         let start = Instant::now();
         loop {

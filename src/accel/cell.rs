@@ -4,7 +4,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::geometry::{Aabb, Axis, num};
+use crate::geometry::polytope::Plane;
+use crate::geometry::{Aabb, Axis, Polyhedron, num};
 use crate::scene::PrimRef;
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -46,6 +47,50 @@ impl Shape {
             Self::Convex { area, .. } => *area,
         }
     }
+}
+
+/// What a cell looks like: more than walks over cells need, so it is made when somebody draws it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Form {
+    /// A box with faces parallel to the axes.
+    Box(Aabb),
+    /// A ball.
+    Sphere {
+        /// Its centre.
+        centre: DVec3,
+        /// Its radius.
+        radius: f64,
+    },
+    /// Plane faces of any direction.
+    Polyhedron(Polyhedron),
+}
+
+impl Form {
+    /// The area of its surface.
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Box(bounds) => bounds.area(),
+            Self::Sphere { radius, .. } => 4.0 * std::f64::consts::PI * radius * radius,
+            Self::Polyhedron(polyhedron) => polyhedron.area(),
+        }
+    }
+
+    /// The part of the plane that divides it, as a polygon; no corners where there is none, or it is a ball.
+    pub fn section(&self, split: &Split) -> Vec<DVec3> {
+        match self {
+            Self::Box(bounds) => section(&Polyhedron::of_box(bounds), split),
+            Self::Polyhedron(polyhedron) => section(polyhedron, split),
+            Self::Sphere { .. } => Vec::new(),
+        }
+    }
+}
+
+fn section(polyhedron: &Polyhedron, split: &Split) -> Vec<DVec3> {
+    let plane = match *split {
+        Split::Axis { axis, pos } => Plane::new(DVec3::AXES[axis.index()], pos.into()),
+        Split::Plane { normal, offset } => Plane::new(normal.as_dvec3(), offset.into()),
+    };
+    polyhedron.section(&plane, 0.0)
 }
 
 /// The plane that divides a cell, in the scaled space.
@@ -179,6 +224,11 @@ pub trait Cells: Send + Sync {
 
     /// Calls `each` for every reference that a leaf holds.
     fn prims(&self, cell: &Cell, each: &mut dyn FnMut(PrimRef));
+
+    /// What a cell looks like, in the space that its shape is in.
+    fn form(&self, cell: &Cell) -> Form {
+        Form::Box(*cell.shape.bounds())
+    }
 
     /// Where the cells of that instance are; `None` for the upper level, or the only one.
     fn level(&self, instance: u32) -> Option<Level> {

@@ -85,6 +85,10 @@ pub struct Args {
     /// Begin in the Structure workspace; with --screenshot, make the film of the build first, and go to that part of it, from 0 to 1.
     #[arg(long, value_name = "PART", value_parser = part, conflicts_with_all = ["measure", "check", "errors", "follow"])]
     pub film: Option<f32>,
+    /// With that, compare bounding volumes around the cell and draw one of them: aabb, sphere, obb, kdop8, kdop14, kdop18, kdop26
+    /// or hull.
+    #[arg(long, value_name = "KIND", value_parser = volume, requires = "select")]
+    pub fit: Option<&'static str>,
     /// Begin in the Ray workspace; with --screenshot, follow the ray of that place first: -1,-1 is the lower left corner of the
     /// view, 1,1 the upper right.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with_all = ["select", "measure", "check", "errors"])]
@@ -151,6 +155,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         isolate: args.isolate,
         try_plane: args.try_plane,
         film: args.film,
+        fit: args.fit,
         follow: args.follow,
         rays: args.rays,
         beside: args.beside.into_iter().map(|one| one.0.id.to_owned()).collect(),
@@ -178,6 +183,12 @@ pub fn run(_: Args) -> Result<(), Failure> {
     Err(Failure::Other(anyhow::anyhow!(
         "this build has no window; the commands scenes, stats, compare, render, rays and trace work. See 'boxwood --help'"
     )))
+}
+
+/// A kind of bounding volume that is compared.
+fn volume(text: &str) -> Result<&'static str, String> {
+    let known = crate::lab::fitted_kinds().find(|kind| *kind == text);
+    known.ok_or_else(|| format!("there is no such volume: use {}", crate::lab::fitted_kinds().collect::<Vec<_>>().join(", ")))
 }
 
 /// `x,0.4`: a plane across an axis, and where.

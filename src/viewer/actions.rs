@@ -6,9 +6,11 @@ use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
 use super::exports::{Export, Form};
+use super::panels::fitting::volume_name;
+use super::panels::overlay::has_levels;
 use super::panels::{self, toolbar};
 use super::panes::{Arrange, LETTERS, MOST, PaneChoice, Shows};
-use super::settings::{BoxColor, Navigation, OverlaySettings, SCALE, SectionSettings, ThemeChoice, Workspace};
+use super::settings::{BoxColor, Levels, Navigation, OverlaySettings, SCALE, SectionSettings, ThemeChoice, Workspace};
 use super::sheets::What;
 use super::state::State;
 use super::timings::Column;
@@ -309,6 +311,11 @@ fn boxes(list: &mut List, state: &State) {
         let drawn = state.shown.is_some() && state.film_on_screen().is_none();
         list.add(name, Command::Overlay(overlay)).key(key).if_possible(overlay != now && drawn);
     }
+    for levels in Levels::ALL {
+        let overlay = OverlaySettings { levels, ..now };
+        let possible = overlay != now && has_levels(state);
+        list.add(format!("Levels drawn: {}", levels.label()), Command::Overlay(overlay)).if_possible(possible);
+    }
     for color in BoxColor::ALL {
         let overlay = OverlaySettings { color, ..now };
         list.add(format!("Colour boxes by {}", color.name()), Command::Overlay(overlay)).if_possible(overlay != now);
@@ -332,6 +339,15 @@ fn structure(list: &mut List, state: &State) {
         list.add(format!("Select: {}", rank.name()), Command::SelectRow(row.unwrap_or(0))).if_possible(row.is_some());
     }
     list.add("Open all of the tree", Command::OpenBelow(0)).if_possible(outline.is_some());
+    let free = !state.is_measuring() && !state.is_checking() && state.building.is_none();
+    let fits = state.fittable().is_some() && free;
+    list.add("Compare bounding volumes of the selected node", Command::FitVolumes).if_possible(fits);
+    for row in state.fitting().iter().flat_map(|(fitting, _)| &fitting.rows) {
+        let name = format!("Draw around the node: {}", volume_name(row.id));
+        list.add(name, Command::DrawVolume(Some(row.id))).if_possible(state.fits.drawn != Some(row.id));
+    }
+    let drawn = state.fits.drawn.is_some();
+    list.add("Draw no volume around the node", Command::DrawVolume(None)).if_possible(drawn);
     let hide = !state.settings.hide_outcome;
     list.add(if hide { "Hide outcomes" } else { "Show outcomes" }, Command::HideOutcome(hide));
 }

@@ -332,10 +332,8 @@ impl eframe::App for App {
         }
         // Progress bars move; everything else wakes the window itself.
         let state = &self.state;
-        let measured = state.is_measuring()
-            || state.is_checking()
-            || state.brute.running.is_some()
-            || state.filming.making.is_some();
+        let measured =
+            state.is_measuring() || state.is_checking() || state.brute.running.is_some() || state.filming.making.is_some();
         if state.loading.is_some() || state.building.is_some() || measured {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }

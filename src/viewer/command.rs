@@ -95,6 +95,12 @@ pub enum Command {
     PlayFilm(bool),
     /// Its events a second.
     FilmSpeed(f32),
+    /// Compare bounding volumes around the selected node.
+    FitVolumes,
+    /// Stop that.
+    CancelFitVolumes,
+    /// Draw a kind of them around it, or none.
+    DrawVolume(Option<&'static str>),
     /// Look why rays of this view are slow.
     FindCauses,
     /// Stop that.

@@ -4,17 +4,17 @@
 pub mod actions;
 mod animation;
 pub mod app;
-mod capture;
 pub mod brute;
+mod capture;
 pub mod checks;
 pub mod command;
 pub mod dialogs;
 mod endurance;
 pub mod errors;
-pub mod filming;
 pub mod exports;
 mod figure;
 pub mod files;
+pub mod filming;
 pub mod folding;
 pub mod format;
 pub mod gpu;
@@ -46,6 +46,7 @@ pub mod timings;
 pub mod tour;
 pub mod tradeoffs;
 pub mod tree;
+mod wires;
 mod workers;
 pub mod workspace_file;
 

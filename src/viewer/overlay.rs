@@ -1,12 +1,15 @@
-//! Which boxes and planes of a structure are drawn: worked out in the background for the present
+//! Which cells and planes of a structure are drawn: worked out in the background for the present
 //! view, since a tree has more cells than any screen shows.
 
-use std::cmp::Reverse;
+mod found;
+#[cfg(test)]
+mod tests;
+
 use std::ops::ControlFlow;
 
 use super::gpu::{BoxInstance, Overlay, Ruler, View};
-use super::settings::{BoxColor, OverlaySettings};
-use super::theme;
+use super::settings::{BoxColor, Levels, OverlaySettings};
+use super::{theme, wires};
 use crate::accel::Accel;
 use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Shape, Split, bounds_in_scene, walk_below};
 use crate::accel::outline::{Outline, Row};
@@ -14,6 +17,7 @@ use crate::geometry::{Aabb, Axis, HalfSpace};
 use crate::lab::Visits;
 use crate::lab::film::Film;
 use crate::task::{Cancel, Cancelled};
+use found::{BOX_EDGES, Drawn, Found};
 
 /// What an overlay is made for.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,10 +28,12 @@ pub struct Wanted {
     pub view: View,
     /// The viewport in pixels.
     pub size_px: [u32; 2],
-    /// The most boxes that are drawn fluently.
+    /// The most boxes that are drawn fluently; of other forms so many that they have no more edges.
     pub limit: usize,
     /// Below which cell alone, with its row.
     pub top: Option<(Cell, u32)>,
+    /// The root of the lower level that it is in, if it is: which, and its depth.
+    pub root: Option<(u32, u32)>,
     /// The rows of cells are known, for colours that need them.
     pub numbered: bool,
     /// Which count of visits colours stand for, if they do and there is one.
@@ -36,17 +42,27 @@ pub struct Wanted {
     pub film_at: Option<u32>,
 }
 
+impl Wanted {
+    /// All that the settings switch on, in colours that need no rows.
+    pub const fn new(settings: OverlaySettings, view: View, size_px: [u32; 2], limit: usize) -> Self {
+        let (top, root, counted, film_at) = (None, None, None, None);
+        Self { settings, view, size_px, limit, top, root, numbered: false, counted, film_at }
+    }
+}
+
 /// An overlay, and how much of the structure it shows.
 #[derive(Clone, Debug, Default)]
 pub struct Collected {
     /// For the GPU; its generation is not set.
     pub overlay: Overlay,
-    /// Boxes and planes that are drawn.
+    /// Cells and planes that are drawn.
     pub shown: usize,
-    /// Boxes and planes that match the settings in and out of view, as far as they were counted.
+    /// Cells and planes that match the settings in and out of view, as far as they were counted.
     pub total: usize,
     /// Some lie outside the view with all that is below them, and were not counted.
     pub more: bool,
+    /// Some of them are no boxes.
+    pub other_forms: bool,
     /// What colours go from and to, if they do not stand for depths.
     pub range: Option<[f32; 2]>,
 }
@@ -57,49 +73,10 @@ const LEAST_PX: f32 = 1.0;
 const ROOM: usize = if cfg!(test) { 1 << 8 } else { 1 << 16 };
 /// Cells looked at between two looks at the cancel flag.
 const CELLS_PER_CHECK: u64 = 4096;
-
-/// A box or plane that is in view, and how large it is there.
-struct Found {
-    px: f32,
-    depth: u32,
-    /// In the space of its level.
-    bounds: Aabb,
-    /// Which that is, as of [`crate::accel::CellId`].
-    instance: u32,
-    plane: bool,
-    /// What its colour stands for.
-    value: f32,
-    /// Who goes first among those that are about as large.
-    rank: u32,
-}
-
-impl Found {
-    fn new(cell: &Cell, px: f32) -> Self {
-        let (instance, bounds) = (cell.id.instance, *cell.shape.bounds());
-        let rank = scatter(cell.id.node ^ scatter(instance));
-        Self { px, depth: cell.depth, bounds, instance, plane: false, value: cell.depth as f32, rank }
-    }
-
-    fn order(&self) -> (Reverse<u32>, u32, bool) {
-        (Reverse(size_class(self.px)), self.rank, self.plane)
-    }
-}
-
-/// Sizes that differ by less than a factor of two are about the same: by size alone the cells of a
-/// grid would all be taken from the corner that is nearest, or that rounding favours.
-fn size_class(px: f32) -> u32 {
-    // The binary exponent. Whole pixels are common sizes, so no limit of a class falls on one.
-    (px * 1.3).to_bits() >> 23
-}
-
-/// Numbers cells anew without any pattern, so that the first so many of neighbours are spread evenly,
-/// and do not look like a structure. They stay the same while the view turns. (The finaliser of
-/// MurmurHash3, Appleby 2011: every bit of the number changes half of the bits.)
-fn scatter(node: u32) -> u32 {
-    let x = (node ^ node >> 16).wrapping_mul(0x85EB_CA6B);
-    let x = (x ^ x >> 13).wrapping_mul(0xC2B2_AE35);
-    x ^ x >> 16
-}
+/// Shapes made between two looks at the cancel flag.
+const SHAPES_PER_CHECK: usize = 256;
+/// The most edges of what is no box: to make them takes longer than to draw them.
+const MOST_EDGES: usize = 1 << 18;
 
 struct Collector<'a> {
     wanted: &'a Wanted,
@@ -108,13 +85,17 @@ struct Collector<'a> {
     ruler: Ruler,
     /// Cells along each axis, of a grid.
     resolution: Option<[u32; 3]>,
+    /// Where there are two of them.
+    levels: Levels,
+    /// The lower level that the walk is in, and the depth of its root.
+    root: Option<(u32, u32)>,
     found: Vec<Found>,
     total: usize,
     more: bool,
 }
 
-/// Walks the structure as deep as the settings want, or as the film of its build has come, skipping what is below a cell that cannot be
-/// seen: a hierarchy's children lie inside it.
+/// Walks the structure as deep as the settings want, or as the film of its build has come, skipping what is below a cell that
+/// cannot be seen: a hierarchy's children lie inside it.
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
@@ -126,7 +107,10 @@ pub fn collect(
 ) -> Result<Collected, Cancelled> {
     let resolution = if let Layout::Flat { resolution, .. } = accel.layout() { Some(resolution) } else { None };
     let ruler = Ruler::new(&wanted.view, wanted.size_px);
-    let mut collector = Collector { wanted, visits, ruler, resolution, found: Vec::new(), total: 0, more: false };
+    let levels = if accel.levels().is_some() { wanted.settings.levels } else { Levels::Through };
+    let root = wanted.root;
+    let (found, total, more) = (Vec::new(), 0, false);
+    let mut collector = Collector { wanted, visits, ruler, resolution, levels, root, found, total, more };
     let mut looked = 0u64;
     let mut stopped = Ok(());
     let film = film.zip(wanted.film_at);
@@ -149,7 +133,7 @@ pub fn collect(
         None => walk_below(accel, top, &mut |cell| visit(cell, None)),
     }
     stopped?;
-    let mut collected = collector.finish(accel);
+    let mut collected = collector.finish(accel, cancel)?;
     if let Some((film, at)) = film {
         light(accel, film, at, (wanted, cancel), &mut collected)?;
     }
@@ -170,16 +154,21 @@ fn light(
     let Some(row) = film.just(at) else { return Ok(()) };
     let cells = film.outline().cells(accel, row, cancel)?;
     let Some(cell) = cells.last() else { return Ok(()) };
-    let white = |cell: &Cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4]);
-    let overlay = &mut collected.overlay;
+    let mut lit = Vec::new();
     accel.children(cell, &mut |part| {
-        overlay.lit.push(white(&part));
-        if overlay.lit.len() <= MOST_LIT { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        lit.push(part);
+        if lit.len() <= MOST_LIT { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
-    if overlay.lit.len() > MOST_LIT {
-        overlay.lit.clear();
+    if lit.len() > MOST_LIT {
+        lit.clear();
     }
-    overlay.lit.push(white(cell));
+    lit.push(*cell);
+    let overlay = &mut collected.overlay;
+    for cell in lit {
+        let wires = wires::of_cell(accel, &cell, &wanted.view, [u8::MAX; 4]);
+        overlay.lit.extend(wires.boxed);
+        overlay.lit_lines.extend(wires.lines);
+    }
     if let Some(Split::Axis { axis, pos }) = cell.split.filter(|_| wanted.settings.planes) {
         let plane = plane_in(cell.shape.bounds(), axis, pos);
         overlay.planes.push(placed(accel, cell.id.instance, &plane, theme::TRIED.to_array()));
@@ -191,34 +180,29 @@ impl Collector<'_> {
     /// Of a film it is told whether the cell is whole: then it is drawn, and nothing below it.
     fn visit(&mut self, accel: &dyn Accel, cell: &Cell, row: Option<Row>, whole: Option<bool>) -> Descend {
         let s = &self.wanted.settings;
+        let depth = self.depth_of(cell);
         let bounds = bounds_in_scene(accel, cell);
         // What the section cuts away is as good as out of view.
         let Some(px) = self.ruler.pixels(&bounds).filter(|_| !self.is_cut_away(&bounds)) else {
             self.more |= !cell.is_leaf() && whole != Some(true);
-            self.total += usize::from(self.wants_box(cell, whole));
+            self.total += usize::from(self.wants_box(cell, depth, whole));
             return Descend::No;
         };
-        if self.wants_box(cell, whole) {
+        if self.wants_box(cell, depth, whole) {
             self.total += 1;
             if px >= LEAST_PX {
                 let value = self.value(cell, row);
-                self.keep(Found { value, ..Found::new(cell, px) });
+                self.keep(Found { value, ..Found::new(cell, depth, px) });
             }
         }
-        if let Some(Split::Axis { axis, pos }) = cell.split
-            && s.planes
-            && whole.is_none()
-            && (s.from_depth..=s.depth).contains(&cell.depth)
-        {
+        if cell.split.is_some() && s.planes && whole.is_none() && (s.from_depth..=s.depth).contains(&depth) {
             self.total += 1;
-            let plane = plane_in(cell.shape.bounds(), axis, pos);
-            if px >= LEAST_PX && !self.is_cut_away(&bounds_in_scene(accel, &Cell { shape: Shape::Box(plane), ..*cell })) {
-                let (bounds, value) = (plane, self.value(cell, row));
-                self.keep(Found { bounds, value, plane: true, ..Found::new(cell, px) });
+            if px >= LEAST_PX && !self.is_plane_cut_away(accel, cell) {
+                let value = self.value(cell, row);
+                self.keep(Found { value, plane: true, ..Found::new(cell, depth, px) });
             }
         }
-        let by_settings = || s.leaves_only || cell.depth < s.depth || self.resolution.is_some();
-        let deeper = whole.map_or_else(by_settings, |whole| !whole);
+        let deeper = whole.map_or_else(|| self.wants_deeper(cell, depth), |whole| !whole);
         if px < LEAST_PX && !cell.is_leaf() && deeper {
             self.more = true;
             return Descend::No;
@@ -234,12 +218,19 @@ impl Collector<'_> {
         }
     }
 
-    fn limit(&self) -> usize {
-        self.wanted.limit.max(1)
-    }
-
     fn is_cut_away(&self, bounds: &Aabb) -> bool {
         self.wanted.view.section.is_some_and(|section| section.misses(bounds))
+    }
+
+    /// Whether the section cuts all of a cell's plane away; planes in any direction go by their cell.
+    fn is_plane_cut_away(&self, accel: &dyn Accel, cell: &Cell) -> bool {
+        let Some(Split::Axis { axis, pos }) = cell.split else { return false };
+        let plane = plane_in(cell.shape.bounds(), axis, pos);
+        self.is_cut_away(&bounds_in_scene(accel, &Cell { shape: Shape::Box(plane), ..*cell }))
+    }
+
+    fn limit(&self) -> usize {
+        self.wanted.limit.max(1)
     }
 
     /// Leaves as many as are drawn.
@@ -251,7 +242,28 @@ impl Collector<'_> {
         }
     }
 
-    fn wants_box(&self, cell: &Cell, whole: Option<bool>) -> bool {
+    /// How deep a cell is below the root that depths count from. A walk is in one instance at a time.
+    fn depth_of(&mut self, cell: &Cell) -> u32 {
+        let instance = cell.id.instance;
+        if self.levels == Levels::Through || instance == 0 {
+            return cell.depth;
+        }
+        let root = self.root.filter(|root| root.0 == instance).unwrap_or((instance, cell.depth));
+        self.root = Some(root);
+        cell.depth.saturating_sub(root.1)
+    }
+
+    fn wants_deeper(&self, cell: &Cell, depth: u32) -> bool {
+        let s = &self.wanted.settings;
+        let deeper = s.leaves_only || depth < s.depth || self.resolution.is_some();
+        match (self.levels, cell.id.instance) {
+            (Levels::Both | Levels::Lower, 0) => true,
+            (Levels::Upper, 1..) => false,
+            _ => deeper,
+        }
+    }
+
+    fn wants_box(&self, cell: &Cell, depth: u32, whole: Option<bool>) -> bool {
         let s = &self.wanted.settings;
         let leaf = cell.is_leaf();
         s.boxes
@@ -259,9 +271,23 @@ impl Collector<'_> {
                 CellKind::Void | CellKind::Leaf { prims: 0 } if !s.empty_cells => false,
                 _ if let Some(whole) = whole => whole,
                 _ if self.resolution.is_some() => leaf && self.in_slice(cell),
-                _ if s.leaves_only => leaf,
-                _ => (s.from_depth..=s.depth).contains(&cell.depth),
+                _ => self.wants_of_level(cell, depth),
             }
+    }
+
+    fn wants_of_level(&self, cell: &Cell, depth: u32) -> bool {
+        let s = &self.wanted.settings;
+        let wanted = if s.leaves_only { cell.is_leaf() } else { (s.from_depth..=s.depth).contains(&depth) };
+        let upper = cell.id.instance == 0;
+        // What stands in a place is the root of a lower level.
+        let instance = !upper && depth == 0;
+        match self.levels {
+            Levels::Through => wanted,
+            Levels::Both => instance || (!upper && wanted),
+            Levels::Upper if s.leaves_only => instance,
+            Levels::Upper => upper && wanted,
+            Levels::Lower => !upper && wanted,
+        }
     }
 
     /// What the colour of a cell stands for; no number where it is not known.
@@ -284,29 +310,70 @@ impl Collector<'_> {
         s.slice == 0 || at.get(s.slice_axis).is_none_or(|layer| layer + 1 == s.slice)
     }
 
+    /// What is drawn of those that were found: the first of them, as long as they have no more edges than are drawn fluently.
+    fn shapes(&mut self, accel: &dyn Accel, cancel: &Cancel) -> Result<Vec<(Found, Drawn)>, Cancelled> {
+        let boxes = self.found.iter().all(Found::is_of_box);
+        if !boxes {
+            self.found.sort_by_key(Found::order);
+        }
+        let mut left = if boxes { usize::MAX } else { self.limit().saturating_mul(BOX_EDGES).min(MOST_EDGES) };
+        let mut shapes = Vec::with_capacity(self.found.len());
+        for (i, found) in std::mem::take(&mut self.found).into_iter().enumerate() {
+            if i.is_multiple_of(SHAPES_PER_CHECK) {
+                cancel.check()?;
+            }
+            let Some(drawn) = Drawn::of(&found, accel) else { continue };
+            let edges = drawn.edges(wires::sides(found.px));
+            if edges > left && !shapes.is_empty() {
+                break;
+            }
+            left = left.saturating_sub(edges);
+            shapes.push((found, drawn));
+        }
+        Ok(shapes)
+    }
+
     /// The largest on the screen, as many as are drawn fluently, of those about as large some from
     /// everywhere; deeper levels over higher ones.
-    fn finish(mut self, accel: &dyn Accel) -> Collected {
+    fn finish(mut self, accel: &dyn Accel, cancel: &Cancel) -> Result<Collected, Cancelled> {
         self.leave_the_first();
-        self.found.sort_by_key(|f| f.depth);
-        let depths = self.found.iter().map(|f| f.depth);
+        let mut shapes = self.shapes(accel, cancel)?;
+        shapes.sort_by_key(|(found, _)| found.depth);
+        let depths = shapes.iter().map(|(found, _)| found.depth);
         let shown = depths.clone().min().unwrap_or(0)..=depths.max().unwrap_or(0);
         let by_depth = self.wanted.settings.color == BoxColor::Depth;
-        let values = self.found.iter().map(|f| f.value).filter(|value| value.is_finite());
+        let values = shapes.iter().map(|(found, _)| found.value).filter(|value| value.is_finite());
         let [low, high] = values.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
         let mut overlay = Overlay::default();
-        for f in &self.found {
+        for (found, drawn) in &shapes {
             let color = match () {
-                () if by_depth => theme::depth_color(f.depth, &shown),
-                () if f.value.is_finite() => theme::amount_color(f.value, [low, high]),
+                () if by_depth => theme::depth_color(found.depth, &shown),
+                () if found.value.is_finite() => theme::amount_color(found.value, [low, high]),
                 () => theme::UNKNOWN,
             };
-            let instance = placed(accel, f.instance, &f.bounds, color.to_array());
-            if f.plane { overlay.planes.push(instance) } else { overlay.boxes.push(instance) }
+            self.draw(accel, found, drawn, color.to_array(), &mut overlay);
         }
+        let other_forms = !overlay.lines.is_empty();
         overlay.planes.extend(self.wanted.view.section.map(|section| section_in(&section, accel.geometry().space().bounds())));
         let range = (!by_depth && low <= high).then_some([low, high]);
-        Collected { overlay, shown: self.found.len(), total: self.total, more: self.more, range }
+        Ok(Collected { overlay, shown: shapes.len(), total: self.total, more: self.more, other_forms, range })
+    }
+
+    fn draw(&self, accel: &dyn Accel, found: &Found, drawn: &Drawn, color: [u8; 4], overlay: &mut Overlay) {
+        let instance = found.cell.id.instance;
+        match drawn {
+            Drawn::Cell(form) => {
+                let wires = wires::of_form(accel, instance, form, (&self.wanted.view, wires::sides(found.px)), color);
+                overlay.boxes.extend(wires.boxed);
+                overlay.lines.extend(wires.lines);
+            }
+            Drawn::Plane(bounds) => overlay.planes.push(placed(accel, instance, bounds, color)),
+            Drawn::Polygon(corners) => {
+                let [fills, lines] = wires::of_polygon(accel, instance, corners, color);
+                overlay.fills.extend(fills);
+                overlay.lines.extend(lines);
+            }
+        }
     }
 }
 
@@ -329,89 +396,4 @@ pub fn plane_in(cell: &Aabb, axis: Axis, pos: f32) -> Aabb {
     plane.min[axis.index()] = pos;
     plane.max[axis.index()] = pos;
     plane
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::accel::{BuildCx, registry};
-    use crate::geometry::Side;
-    use crate::geometry::tri::TestKind;
-    use crate::scene::{Camera, Geometry, LoadCx, Projection, open};
-    use glam::Vec3;
-    use std::sync::Arc;
-
-    /// At most `limit` cells of a grid of many, all of it in view.
-    fn cells_of_a_grid(projection: Projection, limit: usize) -> (Collected, Aabb) {
-        let cx = LoadCx::unattended();
-        let scene = open("builtin:soup?triangles=20000", &cx).expect("built in");
-        let geometry = Arc::new(Geometry::new(&scene, &cx).expect("fits"));
-        let entry = registry::find("grid").expect("registered");
-        let accel = entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &BuildCx::unattended(1)).expect("builds");
-        let settings = OverlaySettings { boxes: true, planes: false, empty_cells: true, slice: 0, ..OverlaySettings::default() };
-        let camera = Camera { eye: Vec3::new(0.3, 0.4, 1.0), target: Vec3::ZERO, up: Vec3::Y, projection };
-        let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
-        let wanted =
-            Wanted { settings, view, size_px: [1000, 1000], limit, top: None, numbered: false, counted: None, film_at: None };
-        (collect(accel.as_ref(), (None, None, None), &wanted, &Cancel::new()).expect("not cancelled"), *geometry.bounds())
-    }
-
-    #[test]
-    fn a_few_cells_of_a_grid_are_from_everywhere() {
-        const LIMIT: usize = 1000;
-        for projection in [Projection::Orthographic { height: 1.0 }, Projection::Perspective { fov_y: 0.1 }] {
-            let (collected, bounds) = cells_of_a_grid(projection, LIMIT);
-            assert_eq!(collected.shown, LIMIT);
-            assert!(collected.total > 10 * LIMIT, "{}", collected.total);
-            // Of four by four by four parts, how many cells are in each.
-            let mut parts = [0; 64];
-            for cell in &collected.overlay.boxes {
-                let at = (cell.at(Vec3::splat(0.5)) - bounds.min) / bounds.size();
-                let [x, y, z] = at.to_array().map(|x| (x * 4.0) as usize);
-                parts[x + 4 * y + 16 * z] += 1;
-            }
-            assert!(parts.iter().all(|n| (4..=36).contains(n)), "{projection:?}: about 16 in each: {parts:?}");
-        }
-    }
-
-    #[test]
-    fn boxes_that_are_cut_away_are_left_out_and_the_plane_is_drawn() {
-        let cx = LoadCx::unattended();
-        let scene = open("builtin:teapot?triangles=1000", &cx).expect("built in");
-        let geometry = Arc::new(Geometry::new(&scene, &cx).expect("fits"));
-        for id in ["bvh", "kdtree"] {
-            let entry = registry::find(id).expect("registered");
-            let accel = entry.build(&geometry, TestKind::Watertight, &entry.defaults(), &BuildCx::unattended(1)).expect("builds");
-            let settings = OverlaySettings { depth: 6, from_depth: 0, ..OverlaySettings::default() };
-            let camera = scene.first_camera(geometry.world_bounds(), 1.0);
-            let whole = View::new(&camera, geometry.space(), 1.0);
-            let collected = |view: View| {
-                let (size_px, limit, top, counted, film_at) = ([1000, 1000], 10_000, None, None, None);
-                let wanted = Wanted { settings, view, size_px, limit, top, numbered: false, counted, film_at };
-                collect(accel.as_ref(), (None, None, None), &wanted, &Cancel::new()).expect("not cancelled").overlay
-            };
-            let all = collected(whole);
-            // No plane of a cell, so that rounding decides nothing.
-            let at = |place: f32| geometry.bounds().min.x + place * geometry.bounds().size().x;
-            for side in [Side::Below, Side::Above] {
-                let section = HalfSpace { axis: Axis::X, at: at(0.5123), side };
-                let left = collected(whole.within(Some(section)));
-                let bounds = |b: &BoxInstance| Aabb { min: b.at(Vec3::ZERO), max: b.at(Vec3::ONE) };
-                let expected: Vec<&BoxInstance> = all.boxes.iter().filter(|b| !section.misses(&bounds(b))).collect();
-                assert_eq!(left.boxes.len(), expected.len(), "{id}");
-                assert!(left.boxes.len() < all.boxes.len());
-                let plane = bounds(left.planes.last().expect("drawn"));
-                assert_eq!((plane.min.x, plane.max.x), (section.at, section.at));
-                let planes = all.planes.iter().filter(|plane| !section.misses(&bounds(plane))).count();
-                assert_eq!(left.planes.len(), planes + 1, "{id}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_larger_go_first() {
-        let cell = |px: f32, rank: u32| Found { px, depth: 0, bounds: Aabb::EMPTY, instance: 0, plane: false, value: 0.0, rank };
-        assert!(cell(20.0, 9).order() < cell(9.0, 1).order() && cell(10.0, 9).order() > cell(11.0, 1).order());
-        assert_eq!(size_class(64.0_f32.next_down()), size_class(64.0_f32.next_up()));
-    }
 }

@@ -3,8 +3,6 @@
 use std::ops::ControlFlow;
 
 use super::format;
-use super::gpu::BoxInstance;
-use super::overlay::placed;
 use crate::accel::cell::{Cell, CellId, Descend, bounds_in_scene, walk};
 use crate::accel::outline::{Outline, cells_along};
 use crate::accel::probe::Counts;
@@ -21,8 +19,6 @@ pub struct Picked {
     pub text: String,
     /// The cells that hold the point, from the root to the leaf.
     pub path: Vec<Cell>,
-    /// Their boxes, in the scene's scaled space.
-    pub boxes: Vec<BoxInstance>,
     /// Which of them is selected.
     pub level: usize,
 }
@@ -38,7 +34,7 @@ impl Picked {
         let kind = if facts.is_leaf() { "Leaf" } else { "Node" };
         let (references, share) = (format::count(facts.references.into()), format::share(facts.share));
         let text = format!("{kind} {} at depth {}: {references} triangles, {share} of the SAH cost", facts.id.node, facts.depth);
-        Ok(Self::at_end(accel, path, text))
+        Ok(Self::at_end(path, text))
     }
 
     /// A cell by those from the root to it.
@@ -52,13 +48,12 @@ impl Picked {
             format!("{kind} {} at depth {}", cell.id.node, cell.depth)
         });
         let text = text.unwrap_or_else(|| "The cell that was selected is not there any more".to_owned());
-        Ok(Self::at_end(accel, path, text))
+        Ok(Self::at_end(path, text))
     }
 
     /// The last of cells within each other.
-    fn at_end(accel: &dyn Accel, path: Vec<Cell>, text: String) -> Self {
-        let place = |cell: &Cell| placed(accel, cell.id.instance, cell.shape.bounds(), [u8::MAX; 4]);
-        Self { text, level: path.len().saturating_sub(1), boxes: path.iter().map(place).collect(), path }
+    const fn at_end(path: Vec<Cell>, text: String) -> Self {
+        Self { text, level: path.len().saturating_sub(1), path }
     }
 
     /// The numbers of the cells from the root to the selected one.
@@ -66,14 +61,16 @@ impl Picked {
         self.path.iter().take(self.level + 1).map(|cell| cell.id).collect()
     }
 
+    /// The root of the lower level that the selected cell is in, if it is in one: which level (see [`CellId`]), and its depth.
+    pub fn lower_root(&self) -> Option<(u32, u32)> {
+        let level = self.selected()?.id.instance;
+        let root = self.path.iter().find(|cell| cell.id.instance == level && level != 0)?;
+        Some((level, root.depth))
+    }
+
     /// The selected cell.
     pub fn selected(&self) -> Option<&Cell> {
         self.path.get(self.level)
-    }
-
-    /// Its box, in the scaled space.
-    pub fn selected_box(&self) -> Option<BoxInstance> {
-        self.boxes.get(self.level).copied()
     }
 }
 
@@ -103,7 +100,7 @@ pub fn pick(
     // The ray that passes what is hidden is none that is counted.
     let work = format!(": this ray took {} nodes, {} tests", format::count(counts.nodes), format::count(counts.prims));
     let text = if visible.is_some() { text } else { text + &work };
-    Ok(Some(Picked::at_end(accel, path, text)))
+    Ok(Some(Picked::at_end(path, text)))
 }
 
 /// The cells from the root to the leaf that holds the triangle and the point; empty if none does.

@@ -35,6 +35,8 @@ pub struct Screenshot {
     try_plane: Option<(Axis, f64)>,
     /// The part of the film that is still to be gone to, and whether the film was asked for.
     film: Option<(f32, bool)>,
+    /// The volumes that are still to be compared around it, and the one to be drawn.
+    fit: Vec<Command>,
     /// What is still to be done in the Ray workspace.
     follow: Vec<Command>,
     /// The view is still to be compared with brute force.
@@ -86,6 +88,7 @@ impl Screenshot {
             isolate: options.isolate,
             try_plane: options.try_plane,
             film: options.film.map(|part| (part, false)),
+            fit: options.fit.map_or_else(Vec::new, |kind| vec![Command::FitVolumes, Command::DrawVolume(Some(kind))]),
             follow: follow(options),
             brute: options.brute,
             tiles: if options.time_tiles { vec![Command::ShowTiles(true), Command::TimeTiles] } else { Vec::new() },
@@ -135,6 +138,7 @@ impl Screenshot {
             }
             Stage::Settling if settled && std::mem::take(&mut self.brute) => commands.push(Command::CheckByBrute(None)),
             Stage::Settling if settled && !self.tiles.is_empty() => commands.push(self.tiles.remove(0)),
+            Stage::Settling if settled && !self.fit.is_empty() => commands.push(self.fit.remove(0)),
             Stage::Settling if settled && self.measure => {
                 commands.push(Command::Measure);
                 self.stage = Stage::Measuring;

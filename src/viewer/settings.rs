@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::accel::Visibility;
 use super::panes::PaneSettings;
+use crate::accel::Visibility;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
@@ -115,6 +115,8 @@ pub struct OverlaySettings {
     pub hidden_lines: bool,
     /// Only the selected cell and what is below it.
     pub subtree_only: bool,
+    /// Of a scene with two levels: which.
+    pub levels: Levels,
     /// What colours of boxes stand for.
     pub color: BoxColor,
 }
@@ -127,6 +129,35 @@ pub struct SectionSettings {
     pub on: bool,
     /// Where, and which.
     pub at: Section,
+}
+
+/// Which level of a scene with two is drawn, and from where depths count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Levels {
+    /// As one tree: depths count from the root of the upper level, through to the lower one.
+    #[default]
+    Through,
+    /// The instances, and below each the cells of a depth from its own root.
+    Both,
+    /// The upper level alone; where only leaves are asked for, its instances.
+    Upper,
+    /// The lower level alone: cells of a depth from the root of each instance.
+    Lower,
+}
+
+impl Levels {
+    /// All, in the order of menus.
+    pub const ALL: [Self; 4] = [Self::Through, Self::Both, Self::Upper, Self::Lower];
+
+    /// The name in menus.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Through => "As one tree",
+            Self::Both => "Both levels",
+            Self::Upper => "Upper level",
+            Self::Lower => "Lower level",
+        }
+    }
 }
 
 /// What colours of boxes stand for.
@@ -196,6 +227,7 @@ impl Default for OverlaySettings {
             slice_axis: 2,
             hidden_lines: true,
             subtree_only: false,
+            levels: Levels::default(),
             color: BoxColor::default(),
         }
     }

@@ -51,6 +51,8 @@ pub const FAINT: f32 = 0.3;
 pub const TRIED: Color32 = Color32::from_rgb(255, 255, 255);
 /// The plane of a section.
 pub const SECTION: Color32 = Color32::from_rgb(242, 177, 52);
+/// A bounding volume that somebody compares with others.
+pub const COMPARED: Color32 = Color32::from_rgb(255, 140, 105);
 /// A box of which an amount is not known.
 pub const UNKNOWN: Color32 = Color32::from_rgb(128, 128, 128);
 /// The width and height of a page of text.

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::panes::Pauses;
 use super::kept::Key;
+use super::panes::Pauses;
 use super::shown;
 use super::workers::Shared;
 use crate::job::Job;

@@ -277,6 +277,24 @@ pub fn find_causes(
     })
 }
 
+/// Bounding volumes around a cell, on their way; none if it holds nothing.
+pub type FittingVolumes = Job<Result<Option<lab::Fitting>, Cancelled>>;
+
+/// Starts comparing bounding volumes around a cell with rays of a view; the renderer is kept from running meanwhile.
+pub fn fit_volumes(
+    shared: &Shared,
+    view: render::Job,
+    size_px: [u32; 2],
+    cell: Cell,
+    pause: Pauses,
+) -> std::io::Result<FittingVolumes> {
+    let pool = shared.pool.clone();
+    Job::spawn("volumes", shared.waker(), move |cancel, progress| {
+        pause.wait();
+        lab::fit_volumes(&view, size_px, &cell, &pool, cancel, progress)
+    })
+}
+
 /// A ray that is to be followed.
 pub struct ToFollow {
     /// Structures that are there, the shown one first.

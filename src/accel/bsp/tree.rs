@@ -14,14 +14,17 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::crossing::{Crossings, Row};
+use super::plane::Slack;
 use crate::accel::best::Best;
-use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape, Split};
+use crate::accel::cell::{Cell, CellId, CellKind, Cells, Form as CellForm, Layout, MemoryPart, Shape, Split};
 use crate::accel::probe::Probe;
 use crate::accel::{PrimHit, Query, Structure};
+use crate::geometry::polytope::Plane;
 use crate::geometry::tri::TriTest;
-use crate::geometry::{Aabb, Axis, Ray};
+use crate::geometry::{Aabb, Axis, Polyhedron, Ray};
 use crate::scene::{Geometry, PrimRef};
 use crate::task::Charge;
+use glam::DVec3;
 
 /// The deepest leaf there can be, so that the traversal's stack has a fixed size.
 pub const MAX_DEPTH: u32 = 64;
@@ -154,6 +157,41 @@ impl<T: TriTest> Bsp<T> {
     }
 }
 
+impl<T> Bsp<T> {
+    /// The half-spaces below and above the plane of a node; `None` for a leaf.
+    fn sides(&self, node: BspNode) -> Option<[Plane; 2]> {
+        let (normal, offset) = match node.kind() {
+            LEAF => return None,
+            GENERAL => {
+                let Row { normal, offset } = self.built.planes[node.data as usize];
+                (normal.as_dvec3(), offset)
+            }
+            axis => (DVec3::AXES[axis as usize], node.pos()),
+        };
+        Some([Plane::new(normal, offset.into()), Plane::new(-normal, -f64::from(offset))])
+    }
+
+    /// The cell of a node, cut out of the whole by the planes above it. What is below a plane has lower numbers than what is
+    /// above it, so the way down is known.
+    fn polyhedron(&self, node: u32) -> Polyhedron {
+        let bounds = self.built.geometry.bounds();
+        let slack = Slack::new(bounds).corner;
+        let (mut cell, mut at) = (Polyhedron::of_box(bounds), 0);
+        while at < node {
+            let here = self.built.nodes[at as usize];
+            let Some([below, above]) = self.sides(here) else { break };
+            if node < here.above() {
+                cell.cut(&below, slack);
+                at += 1;
+            } else {
+                cell.cut(&above, slack);
+                at = here.above();
+            }
+        }
+        cell
+    }
+}
+
 /// A child put aside, and the part of the ray that may be in it.
 #[derive(Clone, Copy)]
 struct Aside {
@@ -245,6 +283,10 @@ impl<T: TriTest> Cells for Bsp<T> {
         if !node.is_leaf() && each(self.cell(cell.id.node + 1, cell.depth + 1)).is_continue() {
             let _ = each(self.cell(node.above(), cell.depth + 1));
         }
+    }
+
+    fn form(&self, cell: &Cell) -> CellForm {
+        CellForm::Polyhedron(self.polyhedron(cell.id.node))
     }
 
     fn prims(&self, cell: &Cell, each: &mut dyn FnMut(PrimRef)) {

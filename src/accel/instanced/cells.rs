@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use super::{Below, Instanced};
 use crate::accel::Accel;
 use crate::accel::bvh::Node;
-use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, Level, MemoryPart, Shape};
+use crate::accel::cell::{Cell, CellId, CellKind, Cells, Form, Layout, Level, MemoryPart, Shape};
 use crate::scene::PrimRef;
 
 impl Instanced {
@@ -65,6 +65,13 @@ impl Cells for Instanced {
     fn prims(&self, cell: &Cell, each: &mut dyn FnMut(PrimRef)) {
         if let Some(accel) = self.accel_below(cell.id.instance) {
             accel.prims(cell, each);
+        }
+    }
+
+    fn form(&self, cell: &Cell) -> Form {
+        match self.accel_below(cell.id.instance) {
+            Some(accel) => accel.form(cell),
+            None => Form::Box(*cell.shape.bounds()),
         }
     }
 

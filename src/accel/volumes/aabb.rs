@@ -2,7 +2,7 @@
 
 use super::points::Points;
 use super::volume::Volume;
-use crate::accel::cell::Shape;
+use crate::accel::cell::{Form, Shape};
 use crate::geometry::{Aabb, Line, Slabs};
 use crate::task::Cancelled;
 use glam::Vec3;
@@ -34,5 +34,9 @@ impl Volume for Aabb {
 
     fn shape(&self, (): &(), _: Vec3) -> Shape {
         Shape::Box(*self)
+    }
+
+    fn form(&self, (): &(), _: Vec3) -> Form {
+        Form::Box(*self)
     }
 }

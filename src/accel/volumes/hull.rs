@@ -1,9 +1,9 @@
 //! The convex hull: the tightest convex volume there is, and the most to store and to test.
 
-use super::kdop::reach;
+use super::kdop::{behind, reach};
 use super::points::Points;
 use super::volume::{Loose, Volume};
-use crate::accel::cell::Shape;
+use crate::accel::cell::{Form, Shape};
 use crate::geometry::hull::{Hull as Points3, hull};
 use crate::geometry::kdop::{box_planes, directions};
 use crate::geometry::num::{index, round_up};
@@ -113,12 +113,15 @@ impl Volume for Hull {
 
     fn shape(&self, shared: &Faces, centre: Vec3) -> Shape {
         let faces = self.faces(shared);
-        let own = faces.iter().map(|face| Plane::new(face.normal.as_dvec3(), f64::from(face.offset)));
-        let mut planes: Vec<Plane> = own.collect();
+        let mut planes = self.planes(shared);
         // A side of the box that a face lies in already would count twice.
         let sides = box_planes(&self.bounds, centre.as_dvec3());
         planes.extend(sides.iter().filter(|side| faces.iter().all(|face| side.normal.dot(face.normal.as_dvec3()) < 1.0 - 1e-9)));
         Shape::Convex { bounds: self.bounds, area: area(&planes, reach(&self.bounds, centre)) }
+    }
+
+    fn form(&self, shared: &Faces, centre: Vec3) -> Form {
+        behind(&self.bounds, &self.planes(shared), centre)
     }
 
     fn shared_bytes(shared: &Faces) -> u64 {
@@ -135,6 +138,11 @@ impl Volume for Hull {
 }
 
 impl Hull {
+    /// Its faces besides those of the box, relative to the centre of the scene.
+    fn planes(&self, shared: &Faces) -> Vec<Plane> {
+        self.faces(shared).iter().map(|face| Plane::new(face.normal.as_dvec3(), f64::from(face.offset))).collect()
+    }
+
     #[inline(always)]
     fn faces<'a>(&self, shared: &'a Faces) -> &'a [HullFace] {
         &shared.faces[self.first as usize..(self.first + self.count) as usize]

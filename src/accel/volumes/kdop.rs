@@ -2,11 +2,11 @@
 
 use super::points::Points;
 use super::volume::Volume;
-use crate::accel::cell::Shape;
+use crate::accel::cell::{Form, Shape};
 use crate::geometry::kdop::{DiagonalLine, Diagonals, Octahedron, box_planes};
 use crate::geometry::num::{round_down, round_up};
-use crate::geometry::polytope::area;
-use crate::geometry::{Aabb, Line, Slabs};
+use crate::geometry::polytope::{Plane, area};
+use crate::geometry::{Aabb, Line, Polyhedron, Slabs};
 use crate::task::Cancelled;
 use glam::Vec3;
 
@@ -64,6 +64,10 @@ impl<const FIRST: usize, const N: usize> Volume for Kdop<FIRST, N> {
         planes.extend(box_planes(&self.bounds, centre.as_dvec3()));
         Shape::Convex { bounds: self.bounds, area: area(&planes, reach(&self.bounds, centre)) }
     }
+
+    fn form(&self, (): &(), centre: Vec3) -> Form {
+        if N == 0 { Form::Box(self.bounds) } else { behind(&self.bounds, &self.slabs.planes(), centre) }
+    }
 }
 
 impl Volume for Octahedron {
@@ -102,6 +106,10 @@ impl Volume for Octahedron {
         let bounds = Aabb { min: min.into(), max: max.into() };
         Shape::Convex { bounds, area: area(&self.planes(), reach(&bounds, centre)) }
     }
+
+    fn form(&self, (): &(), centre: Vec3) -> Form {
+        behind(self.shape(&(), centre).bounds(), &self.planes(), centre)
+    }
 }
 
 fn diagonals<const FIRST: usize, const N: usize>(
@@ -116,6 +124,18 @@ fn diagonals<const FIRST: usize, const N: usize>(
         points.each(|p| slabs = slabs.with(p))?;
     }
     Ok(slabs)
+}
+
+/// The part of a box behind some planes, which are relative to `centre`. What lies within a millionth of its size of a plane
+/// is on it: offsets of 32 bits let planes that have a corner in common miss it by about as much.
+pub fn behind(bounds: &Aabb, planes: &[Plane], centre: Vec3) -> Form {
+    const SLACK: f64 = 1e-6;
+    let slack = SLACK * f64::from(bounds.size().max_element());
+    let mut form = Polyhedron::of_box(bounds);
+    for plane in planes {
+        form.cut(&Plane { offset: plane.offset + plane.normal.dot(centre.as_dvec3()), ..*plane }, slack);
+    }
+    Form::Polyhedron(form)
 }
 
 /// How far a box reaches from `centre`.

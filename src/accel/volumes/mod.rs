@@ -3,9 +3,10 @@
 //!
 //! `Volume` says what a volume is; each is a file of its own (`aabb`, `sphere`, `obb`,
 //! `kdop`, `hull`) and one line in `KINDS`. `fit` puts them around the nodes, `tree` holds
-//! the nodes and the traversal, `inspect` is what measuring looks at.
+//! the nodes and the traversal, `inspect` is what measuring looks at, `alone` one volume without a tree.
 
 mod aabb;
+mod alone;
 mod fit;
 mod hull;
 mod inspect;
@@ -19,6 +20,7 @@ mod volume;
 #[cfg(test)]
 mod tests;
 
+pub use alone::Alone;
 pub use inspect::{Seen, Volumes};
 pub use volume::Loose;
 
@@ -33,7 +35,8 @@ use crate::geometry::kdop::Octahedron;
 use crate::geometry::obb::Obb;
 use crate::geometry::sphere::Sphere;
 use crate::geometry::tri::{Exact, Fast, TestKind, TriTest, Watertight};
-use crate::scene::Geometry;
+use crate::scene::{Geometry, PrimRef};
+use crate::task::{Cancel, Cancelled};
 use fit::too_large;
 use glam::DVec3;
 use tree::{Node, Tree};
@@ -47,13 +50,24 @@ pub struct Kind {
     watertight: Make,
     fast: Make,
     exact: Make,
+    alone: MakeAlone,
 }
 
+type MakeAlone = fn(&Geometry, &[PrimRef], &Cancel) -> Result<Box<dyn Alone>, Cancelled>;
 type Make = fn(Built, &BuildCx) -> Result<Box<dyn Volumes>, BuildError>;
 
 impl Kind {
     const fn of<V: Volume>() -> Self {
-        Self { id: V::ID, watertight: make::<Watertight, V>, fast: make::<Fast, V>, exact: make::<Exact, V> }
+        let alone = alone::around::<V>;
+        Self { id: V::ID, watertight: make::<Watertight, V>, fast: make::<Fast, V>, exact: make::<Exact, V>, alone }
+    }
+
+    /// Puts one volume of this kind around some triangles of a geometry, at least one.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if asked to stop.
+    pub fn around(&self, geometry: &Geometry, prims: &[PrimRef], cancel: &Cancel) -> Result<Box<dyn Alone>, Cancelled> {
+        (self.alone)(geometry, prims, cancel)
     }
 }
 

@@ -2,11 +2,11 @@
 
 use super::points::Points;
 use super::volume::Volume;
-use crate::accel::cell::Shape;
+use crate::accel::cell::{Form, Shape};
 use crate::geometry::kdop::extremes;
 use crate::geometry::num::{round_down, round_up};
 use crate::geometry::obb::{Extents, Obb, good_axes};
-use crate::geometry::{Aabb, Line};
+use crate::geometry::{Aabb, Line, Polyhedron};
 use crate::task::Cancelled;
 use glam::{DVec3, Vec3};
 
@@ -49,5 +49,9 @@ impl Volume for Obb {
         let min = corners.into_iter().fold(DVec3::INFINITY, DVec3::min).to_array().map(round_down);
         let max = corners.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max).to_array().map(round_up);
         Shape::Convex { bounds: Aabb { min: min.into(), max: max.into() }, area: self.area() }
+    }
+
+    fn form(&self, (): &(), centre: Vec3) -> Form {
+        Form::Polyhedron(Polyhedron::of_corners(self.corners().map(|p| p + centre.as_dvec3())))
     }
 }

@@ -25,6 +25,8 @@ pub struct Points<'a> {
 
 /// Triangles between two looks at the cancel flag.
 const CHUNK: usize = 1 << 10;
+/// Nodes of no more triangles are fitted to all of their points.
+pub const SMALL: usize = 32;
 
 impl Points<'_> {
     /// Calls `each` for every point.
@@ -46,7 +48,6 @@ impl Points<'_> {
     /// Points to choose a volume by: all of them in a small node, in a large one what the children
     /// handed up.
     pub fn for_choosing(&self, below: Option<[Vec<DVec3>; 2]>) -> Result<Vec<DVec3>, Cancelled> {
-        const SMALL: usize = 32;
         match below {
             Some([mut left, right]) if self.triangles.len() > SMALL => {
                 left.extend(right);

@@ -2,7 +2,7 @@
 
 use super::points::Points;
 use super::volume::Volume;
-use crate::accel::cell::Shape;
+use crate::accel::cell::{Form, Shape};
 use crate::geometry::kdop::extremes;
 use crate::geometry::num::{round_down, round_up};
 use crate::geometry::sphere::{Sphere, smallest_ball};
@@ -58,6 +58,10 @@ impl Volume for Sphere {
         let (at, r) = (self.centre.as_dvec3() + centre.as_dvec3(), f64::from(self.radius));
         let (min, max) = ((at - r).to_array().map(round_down), (at + r).to_array().map(round_up));
         Shape::Convex { bounds: Aabb { min: min.into(), max: max.into() }, area: self.area() }
+    }
+
+    fn form(&self, (): &(), centre: Vec3) -> Form {
+        Form::Sphere { centre: self.centre.as_dvec3() + centre.as_dvec3(), radius: self.radius.into() }
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::volume::Volume;
 use crate::accel::best::Best;
 use crate::accel::bvh::{MAX_DEPTH, Packed};
-use crate::accel::cell::{Cell, CellId, CellKind, Cells, Layout, MemoryPart, Shape};
+use crate::accel::cell::{Cell, CellId, CellKind, Cells, Form, Layout, MemoryPart, Shape};
 use crate::accel::probe::{Probe, Prune};
 use crate::accel::{PrimHit, Query, Structure};
 use crate::geometry::tri::TriTest;
@@ -152,6 +152,13 @@ impl<T: TriTest, V: Volume> Cells for Tree<T, V> {
         let Some(node) = self.nodes.get(cell.id.node as usize).filter(|node| node.count == 0) else { return };
         if each(self.cell(node.first, cell.depth + 1)).is_continue() {
             let _ = each(self.cell(node.first + 1, cell.depth + 1));
+        }
+    }
+
+    fn form(&self, cell: &Cell) -> Form {
+        match self.nodes.get(cell.id.node as usize) {
+            Some(node) => node.volume.form(&self.shared, self.geometry.bounds().centre()),
+            None => Form::Box(*cell.shape.bounds()),
         }
     }
 

@@ -4,7 +4,7 @@
 use std::fmt::Debug;
 
 use super::points::Points;
-use crate::accel::cell::Shape;
+use crate::accel::cell::{Form, Shape};
 use crate::geometry::Line;
 use crate::task::Cancelled;
 use glam::Vec3;
@@ -50,6 +50,9 @@ pub trait Volume: Copy + Debug + Send + Sync + 'static {
 
     /// The volume as the outside sees it; `centre` is that of the scene.
     fn shape(&self, shared: &Self::Shared, centre: Vec3) -> Shape;
+
+    /// What it looks like, in the coordinates of the scene.
+    fn form(&self, shared: &Self::Shared, centre: Vec3) -> Form;
 
     /// Bytes of what is shared.
     fn shared_bytes(shared: &Self::Shared) -> u64 {

@@ -1,4 +1,4 @@
-//! The edges of boxes in the styles of [`LineStyle`].
+//! The edges of boxes, and single lines, in the styles of [`LineStyle`].
 
 use std::ops::Range;
 
@@ -20,6 +20,8 @@ pub(super) struct LinePipeline {
 
 /// Two triangles for each of twelve edges; the shader makes the corners from their numbers.
 const CORNERS: u32 = 12 * 6;
+/// Those of the one edge that a line has.
+const LINE: u32 = 6;
 
 impl LinePipeline {
     pub(super) fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
@@ -50,15 +52,21 @@ impl LinePipeline {
         pass.set_pipeline(&self.pipeline);
         pass.set_index_buffer(self.corners.slice(..), wgpu::IndexFormat::Uint16);
         pass.set_vertex_buffer(0, overlay.buffer().slice(..));
-        self.draw_styled(pass, &self.line, overlay.edged());
-        self.draw_styled(pass, &self.selected, overlay.selected());
-    }
-
-    fn draw_styled(&self, pass: &mut wgpu::RenderPass<'_>, style: &Uniform, instances: Range<u32>) {
-        if !instances.is_empty() {
-            pass.set_bind_group(2, &style.group, &[]);
-            pass.draw_indexed(0..CORNERS, 0, instances);
+        for (style, corners, instances) in [
+            (&self.line, CORNERS, overlay.edged()),
+            (&self.line, LINE, overlay.lines()),
+            (&self.selected, CORNERS, overlay.selected()),
+            (&self.selected, LINE, overlay.selected_lines()),
+        ] {
+            draw_styled(pass, style, corners, instances);
         }
+    }
+}
+
+fn draw_styled(pass: &mut wgpu::RenderPass<'_>, style: &Uniform, corners: u32, instances: Range<u32>) {
+    if !instances.is_empty() {
+        pass.set_bind_group(2, &style.group, &[]);
+        pass.draw_indexed(0..corners, 0, instances);
     }
 }
 

@@ -1,4 +1,4 @@
-// The edges of boxes, as quads that keep their width on the screen.
+// The edges of boxes, and lines, as quads that keep their width on the screen. A line is a box that is flat along two axes.
 //
 //        side 1  ┌──────────────────────────────────┐
 //                │  p ●━━━━━━━━━━━━━━━━━━━━━━━━● q  │   reach = half the halo + half a pixel

@@ -1,4 +1,6 @@
-//! Boxes and planes drawn over the picture: the data, and its copy on the GPU.
+//! Boxes, planes and edges drawn over the picture: the data, and its copy on the GPU.
+//!
+//! All of it is instances of one kind: a line is a box that is flat along two axes, a triangle is half of a flat one.
 
 use std::ops::Range;
 
@@ -36,6 +38,16 @@ impl BoxInstance {
         Self { corner, edges: [edge(m.x_axis, size.x), edge(m.y_axis, size.y), edge(m.z_axis, size.z)], color }
     }
 
+    /// A line.
+    pub fn line(from: Vec3, to: Vec3, color: [u8; 4]) -> Self {
+        Self { corner: from.to_array(), edges: [(to - from).to_array(), [0.0; 3], [0.0; 3]], color }
+    }
+
+    /// A triangle, among those that are filled.
+    pub fn triangle([a, b, c]: [Vec3; 3], color: [u8; 4]) -> Self {
+        Self { corner: a.to_array(), edges: [(b - a).to_array(), (c - a).to_array(), [0.0; 3]], color }
+    }
+
     /// The point so far along each of its edges.
     pub fn at(&self, along: Vec3) -> Vec3 {
         let [x, y, z] = self.edges.map(Vec3::from_array);
@@ -59,26 +71,51 @@ pub struct Overlay {
     pub boxes: Vec<BoxInstance>,
     /// Flat boxes, filled and with edges: split planes.
     pub planes: Vec<BoxInstance>,
+    /// Lines: the edges of what is no box.
+    pub lines: Vec<BoxInstance>,
+    /// Triangles, filled as planes are: split planes that are no rectangles.
+    pub fills: Vec<BoxInstance>,
     /// A plane more, which somebody tries.
     pub tried: Option<BoxInstance>,
+    /// Lines of a volume that somebody compares with others.
+    pub compared: Vec<BoxInstance>,
     /// The selected box, over everything else and in its own style; its colour is not used.
     pub selected: Option<BoxInstance>,
+    /// The same of what is no box: its lines.
+    pub selected_lines: Vec<BoxInstance>,
     /// More boxes in that style.
     pub lit: Vec<BoxInstance>,
+    /// More lines in that style.
+    pub lit_lines: Vec<BoxInstance>,
 }
 
-/// The instances of an overlay on the GPU: boxes, then planes, then those that stand out.
+impl Overlay {
+    /// Whether the same stands out in both.
+    pub fn is_lit_as(&self, other: &Self) -> bool {
+        let lit = |o: &Self| (o.tried, o.selected);
+        lit(self) == lit(other) && self.compared == other.compared && self.selected_lines == other.selected_lines
+    }
+
+    /// Everything that has ordinary edges.
+    pub fn edged(&self) -> usize {
+        self.boxes.len() + self.planes.len() + self.tried.iter().len() + self.lines.len() + self.compared.len()
+    }
+}
+
+/// The instances of an overlay on the GPU, part after part.
 pub(super) struct OverlayBuffer {
     buffer: wgpu::Buffer,
     generation: Option<u64>,
-    boxes: u32,
-    planes: u32,
-    selected: u32,
+    /// Where each part ends.
+    ends: [u32; PARTS],
 }
+
+/// Boxes; planes and the one that is tried; lines and those of the compared volume; triangles; boxes that stand out; lines that do.
+const PARTS: usize = 6;
 
 impl OverlayBuffer {
     pub(super) fn new(device: &wgpu::Device) -> Self {
-        Self { buffer: instance_buffer(device, 1), generation: None, boxes: 0, planes: 0, selected: 0 }
+        Self { buffer: instance_buffer(device, 1), generation: None, ends: [0; PARTS] }
     }
 
     /// Brings the overlay there if it is another one than before.
@@ -86,26 +123,39 @@ impl OverlayBuffer {
         if self.generation == Some(overlay.generation) {
             return;
         }
-        // Far more than can be told apart on any screen; what is selected and the planes go first.
-        let most = num::floor_index(device.limits().max_buffer_size as f64, num::MAX_INDEX) / size_of::<BoxInstance>();
-        let (selected, tried) = (overlay.selected.as_slice(), overlay.tried.as_slice());
-        let lit = &overlay.lit[..overlay.lit.len().min(most - 2)];
-        let single = selected.len() + tried.len() + lit.len();
-        let planes = &overlay.planes[..overlay.planes.len().min(most - single)];
-        let boxes = &overlay.boxes[..overlay.boxes.len().min(most - single - planes.len())];
-
-        let count = boxes.len() + planes.len() + single;
+        // Far more than can be told apart on any screen; what stands out goes first, boxes last.
+        let mut most = num::floor_index(device.limits().max_buffer_size as f64, num::MAX_INDEX) / size_of::<BoxInstance>();
+        let largest = most;
+        let mut fitting = |part: &'_ [BoxInstance]| {
+            let count = part.len().min(most);
+            most -= count;
+            count
+        };
+        let [selected, selected_lines] = [overlay.selected.as_slice(), &overlay.selected_lines].map(&mut fitting);
+        let [lit, lit_lines] = [&overlay.lit, &overlay.lit_lines].map(|part| fitting(part));
+        let [tried, compared] = [overlay.tried.as_slice(), &overlay.compared].map(&mut fitting);
+        let [planes, fills, lines, boxes] = [&overlay.planes, &overlay.fills, &overlay.lines, &overlay.boxes].map(|p| fitting(p));
+        let parts: [&[&[BoxInstance]]; PARTS] = [
+            &[&overlay.boxes[..boxes]],
+            &[&overlay.planes[..planes], &overlay.tried.as_slice()[..tried]],
+            &[&overlay.lines[..lines], &overlay.compared[..compared]],
+            &[&overlay.fills[..fills]],
+            &[&overlay.lit[..lit], &overlay.selected.as_slice()[..selected]],
+            &[&overlay.lit_lines[..lit_lines], &overlay.selected_lines[..selected_lines]],
+        ];
+        let count = parts.iter().flat_map(|part| part.iter()).map(|part| part.len()).sum::<usize>();
         if (count * size_of::<BoxInstance>()) as u64 > self.buffer.size() {
-            self.buffer = instance_buffer(device, count.next_power_of_two().min(most));
+            self.buffer = instance_buffer(device, count.next_power_of_two().min(largest));
         }
-        let mut offset = 0;
-        for part in [boxes, planes, tried, lit, selected] {
-            let bytes: &[u8] = bytemuck::cast_slice(part);
-            queue.write_buffer(&self.buffer, offset, bytes);
-            offset += bytes.len() as u64;
+        let mut end = 0;
+        for (part, at) in parts.iter().zip(&mut self.ends) {
+            for some in *part {
+                let offset = (end * size_of::<BoxInstance>()) as u64;
+                queue.write_buffer(&self.buffer, offset, bytemuck::cast_slice(some));
+                end += some.len();
+            }
+            *at = num::index(end);
         }
-        let counts = [boxes.len(), planes.len() + tried.len(), lit.len() + selected.len()];
-        [self.boxes, self.planes, self.selected] = counts.map(num::index);
         self.generation = Some(overlay.generation);
     }
 
@@ -113,18 +163,33 @@ impl OverlayBuffer {
         &self.buffer
     }
 
-    pub(super) fn planes(&self) -> Range<u32> {
-        self.boxes..self.boxes + self.planes
+    /// Boxes and planes, of which all edges are drawn.
+    pub(super) fn edged(&self) -> Range<u32> {
+        0..self.ends[1]
     }
 
-    /// Boxes and planes: all that have ordinary edges.
-    pub(super) fn edged(&self) -> Range<u32> {
-        0..self.boxes + self.planes
+    pub(super) fn planes(&self) -> Range<u32> {
+        self.part(1)
+    }
+
+    pub(super) fn lines(&self) -> Range<u32> {
+        self.part(2)
+    }
+
+    pub(super) fn fills(&self) -> Range<u32> {
+        self.part(3)
     }
 
     pub(super) fn selected(&self) -> Range<u32> {
-        let first = self.boxes + self.planes;
-        first..first + self.selected
+        self.part(4)
+    }
+
+    pub(super) fn selected_lines(&self) -> Range<u32> {
+        self.part(5)
+    }
+
+    fn part(&self, at: usize) -> Range<u32> {
+        self.ends[at - 1]..self.ends[at]
     }
 }
 

@@ -1,4 +1,4 @@
-//! Translucent rectangles: split planes.
+//! Translucent rectangles and triangles: split planes.
 
 use eframe::wgpu;
 
@@ -26,11 +26,13 @@ impl PlanePipeline {
 
     /// Fills the planes of an overlay; the view and the surface are groups 0 and 1.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, overlay: &OverlayBuffer) {
-        if overlay.planes().is_empty() {
+        if overlay.planes().is_empty() && overlay.fills().is_empty() {
             return;
         }
         pass.set_pipeline(&self.0);
         pass.set_vertex_buffer(0, overlay.buffer().slice(..));
         pass.draw(0..4, overlay.planes());
+        // Half of a parallelogram.
+        pass.draw(0..3, overlay.fills());
     }
 }

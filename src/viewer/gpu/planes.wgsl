@@ -1,4 +1,4 @@
-// Translucent parallelograms: flat boxes, filled.
+// Translucent parallelograms: flat boxes, filled; or the half of one at its corner.
 
 override FILL: f32;
 override FILL_HIDDEN: f32;

@@ -51,7 +51,7 @@ impl ViewUniform {
             pixels_per_point: list.pixels_per_point,
             orthographic: flag(view.orthographic),
             hidden: flag(list.hidden_lines),
-            boxes: list.overlay.as_ref().map_or(1, |o| (o.boxes.len() + o.planes.len()).max(1)) as f32,
+            boxes: list.overlay.as_ref().map_or(1, |o| o.edged().max(1)) as f32,
             padding: [0.0; 3],
             section: view.section.map_or([0.0; 4], |section| {
                 let (normal, offset) = section.plane();

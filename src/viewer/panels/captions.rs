@@ -75,7 +75,8 @@ fn showing(state: &State) -> String {
         format!(", {}: {low} dark to {high} bright", color.name())
     });
     let (shown, total) = (format::count(c.shown as u64), format::count(c.total as u64));
-    format!("Showing {shown} of {total}{beyond} boxes{}", colors.unwrap_or_default())
+    let what = if c.other_forms { "shapes" } else { "boxes" };
+    format!("Showing {shown} of {total}{beyond} {what}{}", colors.unwrap_or_default())
 }
 
 /// How far the film of the build is.
@@ -150,9 +151,8 @@ pub fn describe(state: &State) -> String {
     }
     sentences.extend(super::panes::describe(state));
     sentences.extend(captions(state).into_iter().map(|caption| caption.text));
-    sentences.extend(
-        heat(state).map(|Heat { name, ends: [low, high], .. }| format!("Colours show {name}, from {low} to {high}")),
-    );
+    sentences
+        .extend(heat(state).map(|Heat { name, ends: [low, high], .. }| format!("Colours show {name}, from {low} to {high}")));
     sentences.extend(state.clicked_amount().map(|amount| format!("{} at the clicked pixel", format::number(amount.into()))));
     sentences.iter().map(|s| s.trim_end_matches(['.', '…'])).map(|s| format!("{s}.")).collect::<Vec<_>>().join(" ")
 }

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use super::{Commands, decision, empty, fact, heading, hiding, tree};
+use super::{Commands, decision, empty, fact, fitting, heading, hiding, tree};
 use crate::accel::cell::{Cell, CellKind, Split};
 use crate::viewer::command::Command;
 use crate::viewer::format;
@@ -30,6 +30,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         Some((id, Some(curves))) if *id == cell.id => decision::show(ui, state, curves, commands),
         Some((id, None)) if *id == cell.id => empty(ui, "No division to weigh: fewer than two triangles, or too many."),
         _ => drop(ui.spinner().on_hover_text("Working out what each division would cost.")),
+    }
+    if state.fittable().is_some() {
+        ui.separator();
+        fitting::show(ui, state, commands);
     }
 }
 

@@ -5,7 +5,7 @@ use eframe::egui::{Checkbox, ComboBox, Slider, Ui};
 use super::{Commands, heading};
 use crate::accel::cell::Layout;
 use crate::viewer::command::Command;
-use crate::viewer::settings::BoxColor;
+use crate::viewer::settings::{BoxColor, Levels};
 use crate::viewer::state::State;
 
 /// Draws the panel.
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
         Layout::Hierarchy | Layout::SplitHierarchy | Layout::Partition | Layout::Nested { .. } => {
             let boxes = if layout.nests() { "Node boxes" } else { "Cells" };
-            ui.checkbox(&mut s.boxes, boxes).on_hover_text("The box of each node at the chosen depth.");
+            ui.checkbox(&mut s.boxes, boxes).on_hover_text("The box, or the volume, of each node at the chosen depth.");
             let leaves_only = Checkbox::new(&mut s.leaves_only, "Leaves only");
             ui.add_enabled(chosen, leaves_only).on_hover_text("The boxes that hold triangles, at any depth.");
             if layout == Layout::Partition && has_split_planes(state) {
@@ -51,6 +51,19 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
     }
+    if has_levels(state) {
+        ui.horizontal(|ui| {
+            let label = ui.label("Levels");
+            let combo = ComboBox::from_id_salt("levels").selected_text(s.levels.label()).show_ui(ui, |ui| {
+                for levels in Levels::ALL {
+                    ui.selectable_value(&mut s.levels, levels, levels.label());
+                }
+            });
+            let help = "Meshes that stand in several places have a tree each, below an upper one: which are drawn, and from which \
+                        root the depth counts.";
+            combo.response.labelled_by(label.id).on_hover_text(help);
+        });
+    }
     let subtree_only = Checkbox::new(&mut s.subtree_only, "Selected cell only");
     ui.add_enabled(chosen, subtree_only).on_hover_text("Draw the boxes in the selected cell alone.");
     ui.horizontal(|ui| {
@@ -66,6 +79,11 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if s != before {
         commands.push(Command::Overlay(s));
     }
+}
+
+/// Whether the scene has two levels.
+pub fn has_levels(state: &State) -> bool {
+    state.shown.as_ref().is_some_and(|b| b.accel.levels().is_some())
 }
 
 /// Whether cells are divided by one plane each, which can be drawn: an octree's are not. A tree that

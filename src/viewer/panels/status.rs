@@ -2,9 +2,9 @@
 
 use eframe::egui::{Align, Label, Layout, RichText, Ui};
 
+use super::{Commands, announce};
 use crate::task::Progress;
 use crate::viewer::command::Command;
-use super::{Commands, announce};
 use crate::viewer::format;
 use crate::viewer::state::State;
 use crate::viewer::theme::Palette;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo};
 use glam::Vec2;
 
-use super::split::{Place, self};
+use super::split::{self, Place};
 use super::{Commands, captions, marking, panes};
 use crate::scene::Camera;
 use crate::viewer::command::Command;

@@ -125,10 +125,26 @@ impl State {
 
     /// Draws what stands out among the boxes anew, and leaves the others as they are.
     pub(super) fn light(&mut self) {
-        let (tried, selected, Some(overlay)) = (self.tried_plane(), self.lit_box(), &self.overlay) else { return };
-        if (overlay.tried, overlay.selected) != (tried, selected) {
+        let Some(now) = &self.overlay else { return };
+        let lit = self.lit(Overlay::default());
+        if !lit.is_lit_as(now) {
+            let Overlay { tried, compared, selected, selected_lines, .. } = lit;
             self.generation += 1;
-            self.overlay = Some(Arc::new(Overlay { generation: self.generation, tried, selected, ..(**overlay).clone() }));
+            let generation = self.generation;
+            let rest = (**now).clone();
+            self.overlay = Some(Arc::new(Overlay { generation, tried, compared, selected, selected_lines, ..rest }));
+        }
+    }
+
+    /// The same boxes with what stands out among them now.
+    pub(super) fn lit(&self, overlay: Overlay) -> Overlay {
+        let cell = self.lit_cell().unwrap_or_default();
+        Overlay {
+            tried: self.tried_plane(),
+            compared: self.compared_volume(),
+            selected: cell.boxed,
+            selected_lines: cell.lines,
+            ..overlay
         }
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::{Causes, State};
+use super::{Causes, Fits, State};
 use crate::accel::BuildError;
 use crate::job::Outcome;
 use crate::render::Mode;
@@ -79,6 +79,7 @@ impl State {
         self.tree.clear();
         self.close_film();
         self.causes = Causes::default();
+        self.fits = Fits::default();
         let (beside, kind, speed) = (std::mem::take(&mut self.rays.beside), self.rays.kind, self.rays.speed);
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
         self.shared.give_back(before.columns);

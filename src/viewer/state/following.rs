@@ -7,12 +7,11 @@ use crate::geometry::Ray;
 use crate::job::Outcome;
 use crate::lab::RayKind;
 use crate::lab::follow::from_text;
-use crate::viewer::gpu::BoxInstance;
 use crate::viewer::kept::Key;
-use crate::viewer::overlay::placed;
 use crate::viewer::pick::Picked;
 use crate::viewer::rays::{Column, MOST};
 use crate::viewer::settings::Workspace;
+use crate::viewer::wires::{self, Wires};
 use crate::viewer::workers::{self, ToFollow};
 
 impl State {
@@ -127,14 +126,16 @@ impl State {
         due
     }
 
-    /// The box that stands out: of the step that is played, or of what is selected.
-    pub(super) fn lit_box(&self) -> Option<BoxInstance> {
+    /// The cell that stands out: of the step that is played, or what is selected.
+    pub(super) fn lit_cell(&self) -> Option<Wires> {
+        let (view, white) = (self.view()?, [u8::MAX; 4]);
         if self.settings.workspace == Workspace::Ray
             && let Some(column) = self.rays.columns.get(self.rays.lead)
         {
             let cell = column.followed.cell_at(self.rays.at)?;
-            return Some(placed(column.built.accel.as_ref(), cell.id.instance, cell.shape.bounds(), [u8::MAX; 4]));
+            return Some(wires::of_cell(column.built.accel.as_ref(), cell, &view, white));
         }
-        self.picked.as_ref().and_then(Picked::selected_box)
+        let cell = self.picked.as_ref().and_then(Picked::selected)?;
+        Some(wires::of_cell(self.shown.as_ref()?.accel.as_ref(), cell, &view, white))
     }
 }

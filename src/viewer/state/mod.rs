@@ -8,13 +8,13 @@ mod checking;
 mod dialog;
 mod erring;
 mod exploring;
-mod filming;
 mod exporting;
+mod filming;
 mod finished;
 mod fitting;
 mod following;
-mod heating;
 mod growing;
+mod heating;
 mod hiding;
 mod keeping;
 mod listing;
@@ -26,14 +26,16 @@ mod tiling;
 mod touring;
 mod trading;
 mod visiting;
+mod volumes;
 
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
 pub use heating::LEAST_SPAN;
-pub use panes::{Pane, Panes};
 use hiding::Hiding;
+pub use panes::{Pane, Panes};
 use saving::{Awaited, Saving};
 use visiting::Visiting;
+pub use volumes::Fits;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -129,6 +131,8 @@ pub struct State {
     pub filming: Filming,
     /// Why rays are slow in the shown structure.
     pub causes: Causes,
+    /// Bounding volumes around the selected node.
+    pub fits: Fits,
     /// Pictures beside that of the shown structure.
     pub panes: Panes,
     /// Threads that trace.
@@ -302,6 +306,7 @@ impl State {
             tree: Tree::default(),
             filming: Filming::default(),
             causes: Causes::default(),
+            fits: Fits::default(),
             panes: Panes::default(),
             trace_pool: pool.clone(),
             rays: Rays::default(),
@@ -373,6 +378,7 @@ impl State {
             || self.exports.report.is_some()
             || self.needing.is_some()
             || self.causes.running.is_some()
+            || self.fits.running.is_some()
             || self.errors.making.is_some()
             || self.tradeoffs.running.is_some()
             || self.tiles.running.is_some()
@@ -493,6 +499,9 @@ impl State {
             Command::FilmTo(at) => self.filming.go(at),
             Command::PlayFilm(play) => self.filming.play(play, Instant::now()),
             Command::FilmSpeed(speed) => self.filming.set_speed(speed, Instant::now()),
+            Command::FitVolumes => self.fit_volumes(),
+            Command::CancelFitVolumes => self.fits.running = None,
+            Command::DrawVolume(id) => self.draw_volume(id),
             Command::FindCauses => self.find_causes(),
             Command::CancelCauses => self.causes.running = None,
             Command::ShowCause(row) => self.show_cause(row),
@@ -708,6 +717,7 @@ impl State {
         self.tree.clear();
         self.close_film();
         self.causes = Causes::default();
+        self.fits = Fits::default();
         self.rays.clear();
         self.shared.give_back(std::mem::take(&mut self.visiting));
         self.shown = Some(built);
@@ -766,6 +776,7 @@ impl State {
         self.advance_load();
         self.advance_build();
         self.advance_causes();
+        self.advance_fitting();
         self.advance_outline();
         self.advance_filming();
         self.advance_following();

@@ -311,8 +311,7 @@ impl State {
         let drawn = (settings.boxes || settings.planes) && !settings.subtree_only;
         let view = self.view()?;
         let limit = self.graphics.comfortable_boxes() / (self.panes.all.len() + 1);
-        let (top, counted, film_at) = (None, None, None);
-        drawn.then_some(Wanted { settings, view, size_px: self.size_px, limit, top, numbered: false, counted, film_at })
+        drawn.then_some(Wanted::new(settings, view, self.size_px, limit))
     }
 
     fn advance_pane_overlay(&mut self, pane: &mut Pane) {

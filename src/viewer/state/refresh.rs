@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::{Answer, Asked, CHANGE_SHOWN, State};
 use crate::job::Outcome;
 use crate::render::sampler::Sampling;
-use crate::render::{HeatRays, Picture, Request, self};
+use crate::render::{self, HeatRays, Picture, Request};
 use crate::viewer::gpu::Overlay;
 use crate::viewer::overlay::Wanted;
 use crate::viewer::pick::Picked;
@@ -110,8 +110,8 @@ impl State {
                 Outcome::Done(Ok(mut collected)) => {
                     self.generation += 1;
                     let overlay = std::mem::take(&mut collected.overlay);
-                    let (tried, selected) = (self.tried_plane(), self.lit_box());
-                    self.overlay = Some(Arc::new(Overlay { generation: self.generation, selected, tried, ..overlay }));
+                    let overlay = self.lit(Overlay { generation: self.generation, ..overlay });
+                    self.overlay = Some(Arc::new(overlay));
                     self.collected = collected;
                     self.collected_for = Some((wanted, key));
                 }
@@ -125,13 +125,15 @@ impl State {
         let visits = self.visiting.newest().filter(|_| settings.color == BoxColor::Visits);
         let film = self.film_on_screen().map(|(film, at)| (Arc::clone(film), at));
         let subtree_only = settings.subtree_only && film.is_none();
+        let top = selected.zip(self.tree.selected).filter(|_| subtree_only && self.tree.selecting.is_none());
         let wanted = Wanted {
             settings,
             view,
             size_px: self.size_px,
             limit: self.graphics.comfortable_boxes(),
             // A row whose cell is on its way is not that of the selected cell.
-            top: selected.zip(self.tree.selected).filter(|_| subtree_only && self.tree.selecting.is_none()),
+            top,
+            root: top.and_then(|_| self.picked.as_ref()?.lower_root()),
             numbered: needs_rows && outline.is_some(),
             counted: visits.as_ref().map(|(number, _)| *number),
             film_at: film.as_ref().map(|film| film.1),

@@ -149,6 +149,28 @@ fn planes_are_filled_faintly_and_fainter_behind() {
 }
 
 #[test]
+fn a_line_is_one_edge_and_a_triangle_half_a_plane() {
+    let Some(mut gpu) = Headless::new("lines and triangles") else { return };
+    let half = TO_ROW_192 * 0.5 * (2.0 - 0.5);
+    let corner = |x: f32, y: f32| glam::Vec3::new(x * half, y * half, 0.5);
+    let mut shot =
+        |name: &str, overlay: Overlay| gpu.shot(name, &DrawList { overlay: Some(Arc::new(overlay)), ..list(256, wall(256)) });
+    let line = BoxInstance::line(corner(-1.0, -1.0), corner(1.0, -1.0), YELLOW);
+    let image = shot("line", Overlay { generation: 1, lines: vec![line], ..Overlay::default() });
+    assert!(along_row(&image, 192).0 >= 120);
+    assert_eq!((along_row(&image, 64), along_row(&image, 128)), ((0, 0), (0, 0)));
+    let fill = BoxInstance::triangle([corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0)], YELLOW);
+    let image = shot("triangle", Overlay { generation: 2, fills: vec![fill], ..Overlay::default() });
+    let expected = 128 + (i32::from(YELLOW[0]) - 128) * 12 / 100;
+    assert!((i32::from(image.get_pixel(90, 170).0[0]) - expected).abs() <= 2);
+    assert_eq!(image.get_pixel(170, 90).0, [128, 128, 128, 255]);
+    let selected = Overlay { generation: 3, selected_lines: vec![line], ..Overlay::default() };
+    let image = shot("selected_line", selected);
+    assert!((70..186).all(|x| image.get_pixel(x, 192).0[2] > 220), "white");
+    assert_eq!(along_row(&image, 64), (0, 0));
+}
+
+#[test]
 fn a_later_overlay_replaces_an_earlier_one() {
     let Some(mut gpu) = Headless::new("replacing an overlay") else { return };
     let mut list = one_box(64, square(0.5));
