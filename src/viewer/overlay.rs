@@ -6,6 +6,7 @@ mod found;
 mod tests;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use super::gpu::{BoxInstance, Overlay, Ruler, View};
 use super::settings::{BoxColor, Levels, OverlaySettings};
@@ -48,6 +49,17 @@ impl Wanted {
         let (top, root, counted, film_at) = (None, None, None, None);
         Self { settings, view, size_px, limit, top, root, numbered: false, counted, film_at }
     }
+}
+
+/// What is known of the structure besides.
+#[derive(Clone, Default)]
+pub struct Known {
+    /// Its cells, for colours that need their rows.
+    pub outline: Option<Arc<Outline>>,
+    /// How often rays enter them.
+    pub visits: Option<Arc<Visits>>,
+    /// The film of its build.
+    pub film: Option<Arc<Film>>,
 }
 
 /// An overlay, and how much of the structure it shows.
@@ -99,12 +111,8 @@ struct Collector<'a> {
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop.
-pub fn collect(
-    accel: &dyn Accel,
-    (outline, visits, film): (Option<&Outline>, Option<&Visits>, Option<&Film>),
-    wanted: &Wanted,
-    cancel: &Cancel,
-) -> Result<Collected, Cancelled> {
+pub fn collect(accel: &dyn Accel, known: &Known, wanted: &Wanted, cancel: &Cancel) -> Result<Collected, Cancelled> {
+    let (outline, visits, film) = (known.outline.as_deref(), known.visits.as_deref(), known.film.as_deref());
     let resolution = if let Layout::Flat { resolution, .. } = accel.layout() { Some(resolution) } else { None };
     let ruler = Ruler::new(&wanted.view, wanted.size_px);
     let levels = if accel.levels().is_some() { wanted.settings.levels } else { Levels::Through };

@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 use super::checks::{RAYS, SEED};
 use super::kept::{Built, Key};
 use super::model::{self, Instances, Model};
-use super::overlay::{self, Collected, Wanted};
+use super::overlay::{self, Collected, Known, Wanted};
 use super::panes::Pauses;
 use super::pick::{self, Picked};
 use super::shown;
@@ -21,7 +21,6 @@ use crate::geometry::Ray;
 use crate::geometry::tri::TestKind;
 use crate::job::Job;
 use crate::lab::converge::Reference;
-use crate::lab::film::Film;
 use crate::lab::findings::{self, Findings};
 use crate::lab::follow::{self, Followed};
 use crate::lab::needs::{Kept, NeedsReport};
@@ -29,7 +28,7 @@ use crate::lab::stability::{self, CaseRow, cases};
 use crate::lab::tradeoffs::{TradeoffRow, Tradeoffs, Variant};
 use crate::lab::{
     self, CheckError, Checked, Contestant, Costs, Enough, Fairness, FitOptions, ImageErrors, MeasureOptions, ModelCheck, Quality,
-    QualityOptions, RasterRow, RayKind, RaySet, SahCurves, Timing, Visits, fit_costs, measure, measure_with_raster, sah_curves,
+    QualityOptions, RasterRow, RayKind, RaySet, SahCurves, Timing, fit_costs, measure, measure_with_raster, sah_curves,
 };
 use crate::render::{self, Looks, Picture, Shot, Tone};
 use crate::scene::texture::Detail;
@@ -189,16 +188,8 @@ pub fn needs(
 pub type Collecting = Job<Result<Collected, Cancelled>>;
 
 /// Starts collecting the boxes of a view.
-pub fn collect(
-    shared: &Shared,
-    accel: Arc<dyn Accel>,
-    (outline, visits, film): (Option<Arc<Outline>>, Option<Arc<Visits>>, Option<Arc<Film>>),
-    wanted: Wanted,
-) -> std::io::Result<Collecting> {
-    Job::spawn("overlay", shared.waker(), move |cancel, _| {
-        let rows = (outline.as_deref(), visits.as_deref(), film.as_deref());
-        overlay::collect(accel.as_ref(), rows, &wanted, cancel)
-    })
+pub fn collect(shared: &Shared, accel: Arc<dyn Accel>, known: Known, wanted: Wanted) -> std::io::Result<Collecting> {
+    Job::spawn("overlay", shared.waker(), move |cancel, _| overlay::collect(accel.as_ref(), &known, &wanted, cancel))
 }
 
 /// What was clicked, on its way.

@@ -9,7 +9,6 @@ use crate::geometry::Side;
 use crate::geometry::tri::TestKind;
 use crate::scene::{Camera, Geometry, LoadCx, Projection, open};
 use glam::Vec3;
-use std::sync::Arc;
 
 /// A structure over a built-in scene, with a parameter set if one is named.
 fn built(model: &str, id: &str, set: Option<(&str, &str)>) -> Box<dyn Accel> {
@@ -30,7 +29,7 @@ fn collected(accel: &dyn Accel, settings: OverlaySettings, projection: Projectio
     let geometry = accel.geometry();
     let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
     let wanted = Wanted::new(settings, view, [1000, 1000], limit);
-    collect(accel, (None, None, None), &wanted, &Cancel::new()).expect("not cancelled")
+    collect(accel, &Known::default(), &wanted, &Cancel::new()).expect("not cancelled")
 }
 
 const PERSPECTIVE: Projection = Projection::Perspective { fov_y: 0.6 };
@@ -172,7 +171,7 @@ fn boxes_that_are_cut_away_are_left_out_and_the_plane_is_drawn() {
         let whole = View::new(&camera, geometry.space(), 1.0);
         let collected = |view: View| {
             let wanted = Wanted::new(settings, view, [1000, 1000], 10_000);
-            collect(accel.as_ref(), (None, None, None), &wanted, &Cancel::new()).expect("not cancelled").overlay
+            collect(accel.as_ref(), &Known::default(), &wanted, &Cancel::new()).expect("not cancelled").overlay
         };
         let all = collected(whole);
         // No plane of a cell, so that rounding decides nothing.

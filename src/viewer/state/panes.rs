@@ -12,7 +12,7 @@ use crate::render::{self, Mode, Picture, Renderer, Request};
 use crate::task::Cancelled;
 use crate::viewer::gpu::Overlay;
 use crate::viewer::kept::{Built, Key};
-use crate::viewer::overlay::{Collected, Wanted};
+use crate::viewer::overlay::{Collected, Known, Wanted};
 use crate::viewer::panes::{PaneChoice, Pauses};
 use crate::viewer::settings::{BoxColor, OverlaySettings, Workspace};
 use crate::viewer::shown;
@@ -333,7 +333,7 @@ impl State {
         let (Some(wanted), Some(built)) = (wanted, &pane.built) else { return };
         let idle = pane.collecting.is_none() && !self.is_measuring();
         if idle && pane.picture.is_some() && pane.collected_for.as_ref() != Some(&wanted) {
-            let job = workers::collect(&self.shared, Arc::clone(&built.accel), (None, None, None), wanted.clone());
+            let job = workers::collect(&self.shared, Arc::clone(&built.accel), Known::default(), wanted.clone());
             pane.collecting = job.ok().map(|job| (wanted, job));
         }
     }

@@ -8,7 +8,7 @@ use crate::job::Outcome;
 use crate::render::sampler::Sampling;
 use crate::render::{self, HeatRays, Picture, Request};
 use crate::viewer::gpu::Overlay;
-use crate::viewer::overlay::Wanted;
+use crate::viewer::overlay::{Known, Wanted};
 use crate::viewer::pick::Picked;
 use crate::viewer::settings::BoxColor;
 use crate::viewer::{format, workers};
@@ -144,8 +144,8 @@ impl State {
         if current || !seen || self.collecting.is_some() || self.is_measuring() {
             return;
         }
-        let rows = (outline, visits.map(|(_, visits)| visits), film.map(|film| film.0));
-        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), rows, wanted.clone()) {
+        let known = Known { outline, visits: visits.map(|(_, visits)| visits), film: film.map(|film| film.0) };
+        if let Ok(job) = workers::collect(&self.shared, Arc::clone(&shown.accel), known, wanted.clone()) {
             self.collecting = Some((wanted, shown.key.clone(), job));
         }
     }
