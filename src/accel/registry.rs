@@ -25,6 +25,16 @@ pub enum Family {
     Bsp,
 }
 
+impl Family {
+    /// Whether nodes wait on a stack while a ray is traced: not where every triangle is tested, or the ray goes from cell to cell.
+    pub const fn has_stack(self) -> bool {
+        match self {
+            Self::Brute | Self::Grid => false,
+            Self::Bvh | Self::KdTree | Self::Octree | Self::Bsp => true,
+        }
+    }
+}
+
 /// How a structure is built.
 pub type Build = fn(&Arc<Geometry>, &ParamValues, &BuildCx) -> Result<Box<dyn Accel>, BuildError>;
 

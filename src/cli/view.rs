@@ -83,9 +83,10 @@ pub struct Args {
     #[arg(long, value_name = "AXIS,PLACE", value_parser = plane, requires = "select")]
     pub try_plane: Option<(Axis, f64)>,
     /// Begin in the Structure workspace; with --screenshot, make the film of the build first, and go to that part of it, from 0 to 1.
-    #[arg(long, value_name = "PART", value_parser = part, conflicts_with_all = ["measure", "check", "errors", "follow"])]
+    #[arg(long, value_name = "PART", value_parser = part,
+        conflicts_with_all = ["measure", "check", "errors", "follow", "rays", "tour", "panes"])]
     pub film: Option<f32>,
-    /// With that, compare bounding volumes around the cell and draw one of them: aabb, sphere, obb, kdop8, kdop14, kdop18, kdop26
+    /// With --select, compare bounding volumes around the cell and draw one of them: aabb, sphere, obb, kdop8, kdop14, kdop18, kdop26
     /// or hull.
     #[arg(long, value_name = "KIND", value_parser = volume, requires = "select")]
     pub fit: Option<&'static str>,
@@ -104,7 +105,7 @@ pub struct Args {
     #[arg(long, requires = "screenshot", conflicts_with_all = ["select", "measure", "check", "errors"])]
     pub check_brute: bool,
     /// Begin the tour at this step, 1 to 6.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=6), conflicts_with_all = ["measure", "check", "errors", "select", "follow", "rays"])]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=6), conflicts_with_all = ["measure", "check", "errors", "select", "follow", "rays", "panes"])]
     pub tour: Option<u8>,
     /// Begin in the Compare workspace with these structures beside each other, two to four between commas.
     #[arg(long, value_name = "IDS", value_delimiter = ',', conflicts_with_all = ["structure", "check", "errors", "select", "follow"])]
@@ -112,7 +113,7 @@ pub struct Args {
     /// How they stand: divider, two or four.
     #[arg(long, value_name = "HOW", value_parser = ["divider", "two", "four"], requires = "panes")]
     pub arrange: Option<String>,
-    /// The last of them shows what rays do more in the first than in it; with --mode nodes, leaves or prims.
+    /// The last of them shows what rays do more in the first than in it; with --mode nodes, leaves, prims or stack.
     #[arg(long, requires = "panes")]
     pub difference: bool,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.

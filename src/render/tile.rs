@@ -229,17 +229,18 @@ impl Job {
         samples: &mut [[f32; 4]],
         cancel: &Cancel,
     ) -> Result<u64, Cancelled> {
-        let counted = |ray: &Ray, mode: accel::Mode| -> Result<(Option<Hit>, u64), Cancelled> {
+        let counted = |ray: &Ray, mode: accel::Mode| -> Result<(Option<Hit>, u64, bool), Cancelled> {
             let mut counts = Counts::default();
             let hit = self.accel.trace_watched(ray, mode, &mut counts, cancel)?;
-            Ok((hit, self.mode.amount(&counts)))
+            Ok((hit, self.mode.amount(&counts), counts.nodes > 0))
         };
         if self.heat_rays == HeatRays::Primary {
             for ((ray, hit), sample) in rays.iter().zip(hits).zip(samples) {
-                let (met, amount) = counted(ray, accel::Mode::Closest)?;
+                let (met, amount, entered) = counted(ray, accel::Mode::Closest)?;
                 *hit = met;
-                // A ray that does nothing at all is background.
-                *sample = [amount as f32, 0.0, 0.0, f32::from(u8::from(met.is_some() || amount > 0))];
+                // A ray that does nothing at all is background; one that enters nodes may still have none that wait.
+                let works = met.is_some() || amount > 0 || (entered && self.mode == Mode::Stack);
+                *sample = [amount as f32, 0.0, 0.0, f32::from(u8::from(works))];
             }
             return Ok(0);
         }
@@ -247,7 +248,7 @@ impl Job {
         let mut leaving = 0;
         for (i, ((ray, hit), sample)) in rays.iter().zip(hits.iter()).zip(samples).enumerate() {
             let Some(hit) = hit else { continue };
-            let (_, amount) = counted(&self.leaving(ray, hit, &sampler(i)), self.heat_rays.mode())?;
+            let (_, amount, _) = counted(&self.leaving(ray, hit, &sampler(i)), self.heat_rays.mode())?;
             *sample = [amount as f32, 0.0, 0.0, 1.0];
             leaving += 1;
         }

@@ -332,9 +332,9 @@ impl eframe::App for App {
         }
         // Progress bars move; everything else wakes the window itself.
         let state = &self.state;
-        let measured =
-            state.is_measuring() || state.is_checking() || state.brute.running.is_some() || state.filming.making.is_some();
-        if state.loading.is_some() || state.building.is_some() || measured {
+        let measured = state.is_measuring() || state.is_checking() || state.brute.running.is_some();
+        let made = state.pane_in_building().is_some() || state.ray_list.progress().is_some() || state.rays.following.is_some();
+        if state.loading.is_some() || state.building.is_some() || measured || made {
             ctx.request_repaint_after(theme::PROGRESS_INTERVAL);
         }
         self.has_worked(start);

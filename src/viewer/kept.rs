@@ -89,9 +89,9 @@ impl Kept {
         self.0.iter_mut().filter(|b| b.key == *key).for_each(|b| b.quality = Some(Arc::clone(quality)));
     }
 
-    /// Takes out the least recently used but for `shown`, if there is one.
-    pub fn take_oldest(&mut self, shown: Option<&Key>) -> Option<Built> {
-        let at = self.0.iter().position(|b| Some(&b.key) != shown)?;
+    /// Takes out the least recently used of those that are not in use, if there is one.
+    pub fn take_oldest(&mut self, in_use: &[Key]) -> Option<Built> {
+        let at = self.0.iter().position(|b| !in_use.contains(&b.key))?;
         Some(self.0.remove(at))
     }
 }

@@ -57,7 +57,7 @@ pub struct ViewerOptions {
     /// Begin in the Structure workspace; with `screenshot`, make the film of the build first, and go to that part of it, from 0
     /// to 1.
     pub film: Option<f32>,
-    /// With that, compare bounding volumes around it, and draw one of that kind.
+    /// With `select`, compare bounding volumes around it, and draw one of that kind.
     pub fit: Option<&'static str>,
     /// Begin in the Ray workspace; with `screenshot`, follow the ray of that place first: (-1, -1) is the lower left corner of
     /// the view, (1, 1) the upper right.

@@ -6,6 +6,7 @@ use super::kept::Key;
 use super::panes::Pauses;
 use super::shown;
 use super::workers::Shared;
+use crate::geometry::HalfSpace;
 use crate::job::Job;
 use crate::lab::Fairness;
 use crate::lab::tile_times::{TileTimes, time_tiles};
@@ -20,6 +21,8 @@ pub struct TileView {
     pub key: Key,
     /// From where it is seen.
     pub camera: Camera,
+    /// Where the model is cut open for it.
+    pub section: Option<HalfSpace>,
     /// Columns and rows.
     pub size_px: [u32; 2],
     /// Which rays.
@@ -28,8 +31,10 @@ pub struct TileView {
 
 /// Tiles on their way.
 pub type TimingTiles = Job<Result<TileTimes, Cancelled>>;
-/// Their picture, on its way.
-pub type DrawingTiles = Job<Picture>;
+/// The depths of the picture that boxes are hidden by.
+pub type Depths = Arc<Vec<f32>>;
+/// Their picture, on its way, with the depths that it was given.
+pub type DrawingTiles = Job<(Depths, Picture)>;
 
 /// Everything of it.
 #[derive(Default)]
@@ -40,8 +45,8 @@ pub struct Tiles {
     pub running: Option<(TileView, TimingTiles)>,
     /// What was measured.
     pub found: Option<(TileView, Arc<TileTimes>)>,
-    /// Its picture, and the range that was asked for.
-    pub picture: Option<(Option<Range>, Arc<Picture>)>,
+    /// Its picture, the range that was asked for, and the depths that boxes are hidden by.
+    pub picture: Option<(Option<Range>, Depths, Arc<Picture>)>,
     /// That, on its way.
     pub drawing: Option<(Option<Range>, DrawingTiles)>,
 }
@@ -79,6 +84,7 @@ pub fn draw(
             (range, amounts.develop(range), amounts)
         });
         let picture = shown::in_place_of(&present, view.size_px, rgba);
-        Picture { range, amounts: Some(Arc::new(amounts)), camera: view.camera, ..picture }
+        let picture = Picture { range, amounts: Some(Arc::new(amounts)), camera: view.camera, ..picture };
+        (Arc::clone(&present.depth), picture)
     })
 }

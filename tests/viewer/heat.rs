@@ -162,7 +162,7 @@ fn timing_tiles_can_be_cancelled() {
     w.until("progress", |s| {
         s.tiles.running.as_ref().is_some_and(|(_, job)| job.progress.snapshot().fraction.is_some_and(|share| share > 0.0))
     });
-    w.button("Cancel");
+    w.button("Cancel timing the tiles");
     assert!(w.state().tiles.running.is_none() && w.state().tiles.found.is_none());
     w.settle();
     assert!(w.says("Not timed.") && w.has(Role::Button, "Time the tiles"));

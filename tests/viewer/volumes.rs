@@ -70,7 +70,7 @@ fn comparing_volumes_can_be_cancelled() {
     w.harness.get_by(|n| n.role() == Role::TreeItem && n.label().is_some_and(|l| l.starts_with("node 0, depth 0"))).click();
     w.settle();
     w.button("Compare bounding volumes");
-    w.button("Cancel");
+    w.button("Cancel comparing volumes");
     assert!(w.state().fits.running.is_none() && w.state().fitting().is_none() && w.state().error.is_none());
 }
 

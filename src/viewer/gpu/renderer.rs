@@ -62,6 +62,11 @@ impl Renderer {
         id: PaneId,
         list: &DrawList,
     ) -> bool {
+        if id == 0 {
+            // Viewports that were not drawn since the first one was are closed.
+            let before = self.panes.get(&id).map_or(0, |pane| pane.used);
+            self.panes.retain(|_, pane| pane.used >= before);
+        }
         self.clock += 1;
         let mut pane = self.take_pane(device, id, fitting(device, list.size_px));
         if let Base::Raster(raster) = &list.base {

@@ -13,6 +13,9 @@ use crate::viewer::settings::{BoxColor, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
+/// The most lines that stand above each other in a corner.
+pub const ROWS: f32 = 3.0;
+
 /// A line over the picture.
 struct Caption {
     /// The corner or edge of the view that it stands at.

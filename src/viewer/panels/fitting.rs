@@ -45,7 +45,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         let now = job.progress.snapshot();
         ui.horizontal(|ui| {
             ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(30.0 * theme::GRID).text("Comparing"));
-            let cancel = ui.button("Cancel").on_hover_text("Stop comparing volumes.");
+            let cancel = ui.button("Cancel").accessible_name("Cancel comparing volumes");
+            let cancel = cancel.on_hover_text("Stop comparing volumes.");
             if cancel.clicked() {
                 commands.push(Command::CancelFitVolumes);
             }

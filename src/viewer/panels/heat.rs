@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if let Some((picture, amounts)) = state.on_screen().filter(|_| !other).and_then(|p| Some((p, p.amounts.as_ref()?))) {
         ends(ui, state, picture, &amounts.histogram, commands);
         typed(ui, state, picture.range, amounts, commands);
-        let help = "The amount of the pixel that was last clicked. Under the pointer it is told beside the colours.";
+        let help = "The amount of the pixel that was last clicked. Under the pointer it is told beside the colours, where one picture is shown.";
         fact(ui, "Clicked pixel", format::or_missing(state.clicked_amount(), |x| format::number(x.into())), help);
     }
     ui.separator();
@@ -51,7 +51,8 @@ fn tiles(ui: &mut Ui, state: &State, commands: &mut Commands) {
         ui.horizontal(|ui| {
             let share = job.progress.snapshot().fraction.unwrap_or(0.0);
             ui.add(ProgressBar::new(share).desired_width(30.0 * theme::GRID).text("Timing"));
-            if ui.button("Cancel").on_hover_text("Stop timing.").clicked() {
+            let cancel = ui.button("Cancel").accessible_name("Cancel timing the tiles");
+            if cancel.on_hover_text("Stop timing.").clicked() {
                 commands.push(Command::CancelTiles);
             }
         });
@@ -188,6 +189,10 @@ fn typed(ui: &mut Ui, state: &State, fitting: Range, amounts: &Amounts, commands
             // What is typed is taken; the other end gives way.
             let range = if low { Range { min, max: max.max(min) } } else { Range { min: min.min(max), max } };
             commands.push(Command::HeatRange(Some(range)));
+        }
+        // Pictures that share a range have the button above them.
+        if state.shares_ranges() {
+            return;
         }
         let fit = ui.add_enabled(state.range.is_some(), Button::new("Auto-fit"));
         if fit.on_hover_text("From 0 to what one pixel in two hundred exceeds.").clicked() {

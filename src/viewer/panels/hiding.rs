@@ -20,7 +20,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if !selected && hidden.is_none() {
         return;
     }
-    let free = selected && !state.is_measuring();
+    let free = selected && !state.is_measuring() && state.hiding.is_none();
     let written = |key| actions::written(ui.ctx(), key);
     let isolate = format!("Show only the triangles of this cell and those below it. {BUT} ({})", written(&ISOLATE));
     let hide = format!("Hide the triangles of this cell and those below it. {BUT} ({})", written(&HIDE));

@@ -89,6 +89,8 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.brute.marking, Command::MarkRectangle(false)),
         (state.brute.running.is_some(), Command::CancelBrute),
         (state.hiding.is_some(), Command::CancelHide),
+        (state.filming.making.is_some(), Command::CloseFilm),
+        (state.fits.running.is_some(), Command::CancelFitVolumes),
         (state.ray_list.reading.is_some() || state.ray_list.tracing.is_some(), Command::CancelRays),
         (state.panes.tuned.is_some(), Command::TunePane(None)),
         (building.is_some(), Command::ClosePane(building.unwrap_or_default())),

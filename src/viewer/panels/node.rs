@@ -29,6 +29,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     match &state.curves {
         Some((id, Some(curves))) if *id == cell.id => decision::show(ui, state, curves, commands),
         Some((id, None)) if *id == cell.id => empty(ui, "No division to weigh: fewer than two triangles, or too many."),
+        _ if state.is_measuring() => empty(ui, "Worked out once measuring has ended."),
         _ => drop(ui.spinner().on_hover_text("Working out what each division would cost.")),
     }
     if state.fittable().is_some() {

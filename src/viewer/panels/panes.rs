@@ -7,7 +7,7 @@ use super::split::Place;
 use super::{Commands, empty, structure};
 use crate::accel::registry;
 use crate::render::colormap::{difference, viridis};
-use crate::render::{Mode, Picture};
+use crate::render::{HeatRays, Mode, Picture};
 use crate::viewer::command::Command;
 use crate::viewer::kept::Key;
 use crate::viewer::panes::{Arrange, LETTERS, PaneChoice, Shows};
@@ -118,8 +118,11 @@ fn chosen_picture(ui: &mut Ui, (which, letter): (usize, &str), choice: &PaneChoi
         Shows::Difference => less.clone(),
     };
     let combo = ComboBox::from_id_salt(("picture", which)).width(LIST).height(theme::LONG_MENU);
-    let combo = combo.selected_text(text(choice.shows)).show_ui(ui, |ui| {
-        let modes = Mode::ALL.into_iter().filter(|mode| *mode != Mode::Path).map(Shows::Mode);
+    // Without amounts there is no difference of them.
+    let plain = choice.shows == Shows::Difference && !state.settings.mode.is_heat();
+    let combo = combo.selected_text(text(if plain { Shows::Same } else { choice.shows })).show_ui(ui, |ui| {
+        let offered = |mode: &Mode| *mode != Mode::Path && (*mode != Mode::Stack || has_stack(state, choice));
+        let modes = Mode::ALL.into_iter().filter(offered).map(Shows::Mode);
         let differs = state.settings.mode.is_heat().then_some(Shows::Difference);
         for shows in std::iter::once(Shows::Same).chain(differs).chain(modes) {
             let help = match shows {
@@ -133,6 +136,12 @@ fn chosen_picture(ui: &mut Ui, (which, letter): (usize, &str), choice: &PaneChoi
         }
     });
     combo.response.accessible_name(format!("Picture of {letter}")).on_hover_text("What is shown of its hits.");
+}
+
+/// Whether rays keep a stack in what a pane shows: in two levels they do whatever the structure is.
+fn has_stack(state: &State, choice: &PaneChoice) -> bool {
+    let levels = state.shown.as_ref().is_some_and(|shown| shown.accel.levels().is_some());
+    levels || choice.entry().family.has_stack()
 }
 
 /// The parameters of a pane, if they are open.
@@ -233,10 +242,11 @@ fn plates(ui: &Ui, places: &[Place], state: &State) {
 /// What the colours of pictures stand for, each kind once, with the last picture that shows it.
 fn heats(state: &State) -> Vec<(usize, Heat)> {
     let (first, mut all) = (state.settings.mode, Vec::<(usize, Mode, Heat)>::new());
+    let each = each(state);
     let mut differences = Vec::new();
     let mut add = |which: usize, mode: Mode, picture: &Picture| {
         all.retain(|(_, known, _)| *known != mode);
-        all.push((which, mode, Heat::new(format!("{} a ray", mode.label()), picture.range, viridis)));
+        all.push((which, mode, Heat::new(format!("{} {each}", mode.label()), picture.range, viridis)));
     };
     if let Some(picture) = state.picture.as_ref().filter(|_| first.is_heat()) {
         add(0, first, picture);
@@ -252,6 +262,11 @@ fn heats(state: &State) -> Vec<(usize, Heat)> {
     all.into_iter().map(|(which, _, heat)| (which, heat)).chain(differences).collect()
 }
 
+/// Of what amounts are told: only where A is a heat map itself its rays may be others than the camera's.
+fn each(state: &State) -> &'static str {
+    if state.settings.mode.is_heat() { state.settings.heat_rays.each() } else { HeatRays::default().each() }
+}
+
 /// What the colours of a difference stand for.
 fn less(state: &State, which: usize, picture: &Picture) -> Heat {
     let first = state.shown.as_ref().map_or_else(|| state.settings.entry(), |shown| shown.key.entry);
@@ -259,7 +274,7 @@ fn less(state: &State, which: usize, picture: &Picture) -> Heat {
     let letter = LETTERS[which + 1];
     let [a, b] = if a == b { [LETTERS[0], letter] } else { [a, b] };
     let size = format::number(picture.range.max.into());
-    let name = format!("{} a ray, A less {letter}", state.settings.mode.label());
+    let name = format!("{} {}, A less {letter}", state.settings.mode.label(), each(state));
     let colors = |t: f32| difference(2.0 * t - 1.0);
     Heat { ends: [format!("{size} more in {b}"), format!("{size} more in {a}")], ..Heat::new(name, picture.range, colors) }
 }
@@ -272,7 +287,7 @@ fn legends(ui: &Ui, places: &[Place], state: &State) {
         let narrow = which == 0 && place.view.width() < 3.0 * captions::LEGEND.x;
         let up = match strips {
             true => i as f32 * (captions::LEGEND.y + theme::GRID),
-            false if narrow => 2.0 * (theme::ROW + theme::GRID),
+            false if narrow => captions::ROWS * (theme::ROW + theme::GRID),
             false => 0.0,
         };
         let inner = place.view.shrink(theme::GUTTER).translate(vec2(0.0, -up));

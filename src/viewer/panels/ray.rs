@@ -86,7 +86,8 @@ fn file(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let list = &state.ray_list;
     if let Some(progress) = list.progress() {
         ui.horizontal(|ui| {
-            if ui.button("Cancel").on_hover_text("Stop, and put the file of rays away.").clicked() {
+            let cancel = ui.button("Cancel").accessible_name("Cancel the rays");
+            if cancel.on_hover_text("Stop reading or tracing the rays.").clicked() {
                 commands.push(Command::CancelRays);
             }
             let now = progress.snapshot();

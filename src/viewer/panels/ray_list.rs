@@ -22,7 +22,10 @@ pub fn show(ui: &mut Ui, state: &State, file: &Listed, commands: &mut Commands) 
     empty(ui, &format!("{}: {} rays{more}", file.name, format::count(file.rays.len() as u64)));
     let shown = state.shown.as_ref().map(|shown| &shown.key);
     if list.traced.as_ref().is_none_or(|traced| Some(&traced.of) != shown) {
-        return empty(ui, if list.tracing.is_some() { "Tracing them…" } else { "They are traced once nothing is measured." });
+        return empty(
+            ui,
+            if list.tracing.is_some() { "Tracing them…" } else { "They are traced once nothing is measured or built." },
+        );
     }
     header(ui);
     let id = Id::unique("rays of a file");

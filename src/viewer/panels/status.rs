@@ -48,7 +48,7 @@ pub fn show(ui: &mut Ui, state: &State, ui_secs: Option<f64>, commands: &mut Com
 fn doing(state: &State) -> Option<(String, Option<f32>)> {
     let of = |what: &str, progress: &Progress| Some((what.to_owned(), progress.snapshot().fraction));
     if let Some(job) = &state.exports.report {
-        return of(&format!("Report: {}", job.progress.snapshot().phase), &job.progress);
+        return of("Making the report", &job.progress);
     }
     if let Some(job) = &state.measuring {
         return of("Measuring", &job.progress);
@@ -89,6 +89,9 @@ fn measured(state: &State) -> Option<(&'static str, &Progress)> {
         state.tradeoffs.running.as_ref().map(|(job, _)| ("Measuring quality", &job.progress)),
         state.checks.checking.as_ref().map(|job| ("Checking the model", &job.progress)),
         state.checks.running.as_ref().map(|(job, _)| ("Running the stability lab", &job.progress)),
+        state.filming.making.as_ref().map(|job| ("Making the film", &job.progress)),
+        state.fits.running.as_ref().map(|job| ("Comparing volumes", &job.progress)),
+        state.tradeoffs.growing.as_ref().map(|job| ("Measuring time against triangles", &job.progress)),
     ];
     jobs.into_iter().flatten().next()
 }

@@ -55,7 +55,7 @@ fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
         return;
     }
     let measure = ui.add_enabled(
-        state.shown.is_some() && state.building.is_none() && !state.is_checking() && state.needing.is_none(),
+        state.shown.is_some() && state.building.is_none() && !state.is_checking() && !state.is_measuring(),
         egui::Button::new("Measure"),
     );
     let help = "Build every structure and time all of them on the rays of this view, in turn, at least five rounds and a second each. Rendering rests meanwhile.";

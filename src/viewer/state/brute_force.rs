@@ -9,7 +9,9 @@ use crate::job::Outcome;
 use crate::lab::{PixelRect, RayKind};
 use crate::render::{self, Mode};
 use crate::viewer::brute::{self, Of, Part};
+use crate::viewer::command::Command;
 use crate::viewer::kept::Key;
+use crate::viewer::rays::MOST;
 use crate::viewer::settings::Workspace;
 
 /// The structure that looks at everything.
@@ -98,8 +100,12 @@ impl State {
         let unlike = self.brute.unlike();
         let (count, Some(ray)) = (unlike.len(), unlike.get(number).map(|pixel| pixel.ray)) else { return };
         self.brute.next = (number + 1) % count;
+        self.carry_out(Command::Workspace(Workspace::Ray));
+        (self.ray_list.chosen, self.rays.awaited) = (None, None);
         (self.rays.asked, self.rays.kind, self.rays.playing) = (Some(ray), RayKind::Primary, None);
-        self.settings.workspace = Workspace::Ray;
+        if !self.rays.beside.contains(&BRUTE) && self.rays.beside.len() + 1 >= MOST {
+            self.rays.beside.pop();
+        }
         self.follow_beside(BRUTE, true);
     }
 }

@@ -12,8 +12,8 @@ impl State {
     /// The picture that is on the screen: the present one, that of tiles' times, or in the Compare workspace that of a point of
     /// a curve.
     pub fn on_screen(&self) -> Option<&Arc<Picture>> {
-        let shows = self.settings.workspace.shows_errors() && self.settings.mode == Mode::Path;
-        let tiles = self.tiles.picture.as_ref().filter(|_| self.shows_tiles()).map(|(_, picture)| picture);
+        let shows = self.settings.workspace.shows_errors() && self.settings.mode == Mode::Path && !self.tiles.shown;
+        let tiles = self.tiles.picture.as_ref().filter(|_| self.shows_tiles()).map(|(_, _, picture)| picture);
         self.errors.picture.as_ref().filter(|_| shows).or(tiles).or(self.picture.as_ref())
     }
 

@@ -109,10 +109,7 @@ impl State {
                 self.show(built);
             }
             Outcome::Done(Err(BuildError::Cancelled(_))) => {}
-            Outcome::Done(Err(BuildError::Memory { .. }))
-                if let Some(oldest) = self.kept.take_oldest(self.shown.as_ref().map(|b| &b.key)) =>
-            {
-                self.shared.give_back(oldest); // the next build waits for it
+            Outcome::Done(Err(BuildError::Memory { .. })) if self.make_room() => {
                 self.building = None;
                 return self.choose(); // there is room for it now, or one more can go
             }

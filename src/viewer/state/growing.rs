@@ -29,7 +29,7 @@ impl State {
         }
         let pause = self.begin_measuring();
         let Some(model) = &self.model else { return };
-        let (name, triangles) = (model.scene.name.clone(), model.geometry.counts().live);
+        let (name, triangles) = (model.scene.name.clone(), model.geometry.counts().triangles);
         // A scene that is made in each size is asked for without one.
         let name = name.split_once("?triangles=").map_or(name.clone(), |(base, _)| base.to_owned());
         // A model is taken as it is and once cut finer, at least.

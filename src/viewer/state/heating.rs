@@ -17,7 +17,8 @@ impl State {
 
     /// Shows the work of other rays.
     pub(super) fn show_heat_of(&mut self, rays: HeatRays) {
-        (self.settings.heat_rays, self.range) = (rays, None);
+        self.settings.heat_rays = rays;
+        self.fit_anew();
     }
 
     /// Shows tiles' times, or the renderer's picture again.

@@ -24,7 +24,9 @@ impl State {
     /// Shows the triangles of the selected cell alone, or hides them.
     pub(super) fn hide_triangles(&mut self, change: Change) {
         let cell = self.picked.as_ref().and_then(Picked::selected).copied();
-        let (Some(cell), Some(shown), false) = (cell, &self.shown, self.is_measuring()) else { return };
+        // One after the other, or the second would not know what the first hides.
+        let busy = self.is_measuring() || self.hiding.is_some();
+        let (Some(cell), Some(shown), false) = (cell, &self.shown, busy) else { return };
         let (accel, before, budget) = (Arc::clone(&shown.accel), self.visible().cloned(), self.shared.budget.clone());
         let job = Job::spawn("hide", self.shared.waker(), move |cancel, _| {
             Visibility::change(before.as_deref(), accel.as_ref(), (&cell, change), &budget, cancel)

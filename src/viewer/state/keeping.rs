@@ -3,7 +3,7 @@
 
 use super::State;
 use crate::job::Outcome;
-use crate::viewer::kept::Built;
+use crate::viewer::kept::{Built, Key};
 use crate::viewer::model::Instances;
 use crate::viewer::state::finished::sentence;
 use crate::viewer::workers;
@@ -38,13 +38,27 @@ impl State {
         if self.tree.failed.is_some() {
             self.tree.clear(); // there may be room for it now
         }
-        let (mut left, shown) = (self.shared.budget.used(), self.shown.as_ref().map(|built| &built.key));
+        let mut left = self.shared.budget.used();
         while left > limit
-            && let Some(oldest) = self.kept.take_oldest(shown)
+            && let Some(oldest) = self.kept.take_oldest(&self.in_use())
         {
             left = left.saturating_sub(oldest.accel.memory().iter().map(|part| part.bytes).sum());
             self.shared.give_back(oldest);
         }
+    }
+
+    /// The structures whose pictures are on the screen: to forget that they are kept would free nothing.
+    fn in_use(&self) -> Vec<Key> {
+        let others = self.panes.all.iter().filter_map(|pane| pane.built.as_ref());
+        self.shown.iter().chain(others).map(|built| built.key.clone()).collect()
+    }
+
+    /// Gives back the least recently used structure that is kept, which the next build waits for; false if there is none.
+    pub(super) fn make_room(&mut self) -> bool {
+        let oldest = self.kept.take_oldest(&self.in_use());
+        let there = oldest.is_some();
+        self.shared.give_back(oldest);
+        there
     }
 
     /// Bytes that are charged, and the most there may be.

@@ -23,6 +23,9 @@ impl State {
     /// Reads a file of rays, and shows them in the Ray workspace.
     pub(super) fn open_rays(&mut self, path: PathBuf) {
         (self.asking, self.error) = (None, None);
+        if self.loading.is_some() {
+            return self.await_rays(path);
+        }
         match ray_list::read(&self.shared, path) {
             Ok(job) => self.ray_list.reading = Some(job),
             Err(e) => self.fail(format!("Can't open the rays: {e}.")),
@@ -34,10 +37,10 @@ impl State {
         self.ray_list.awaited = Some(path);
     }
 
-    /// Forgets the rays; one that waits for its model stays.
+    /// Forgets the rays; a file that waits for its model stays, and one that is asked for.
     pub(super) fn close_rays(&mut self) {
-        let awaited = self.ray_list.awaited.take();
-        let before = std::mem::replace(&mut self.ray_list, RayList { awaited, ..RayList::default() });
+        let (awaited, asked) = (self.ray_list.awaited.take(), self.ray_list.asked.take());
+        let before = std::mem::replace(&mut self.ray_list, RayList { awaited, asked, ..RayList::default() });
         self.shared.give_back((before.file, before.traced)); // they may be large
     }
 

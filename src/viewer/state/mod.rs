@@ -11,7 +11,6 @@ mod exploring;
 mod exporting;
 mod filming;
 mod finished;
-mod fitting;
 mod following;
 mod growing;
 mod heating;
@@ -19,6 +18,7 @@ mod hiding;
 mod keeping;
 mod listing;
 mod panes;
+mod ranges;
 mod refresh;
 mod saving;
 mod sectioning;
@@ -385,9 +385,14 @@ impl State {
             || self.tradeoffs.growing.is_some()
     }
 
-    /// Whether the lab runs, the model is checked or a file of rays is traced, which would disturb a measurement.
+    /// Whether the lab runs, the model is checked, a file of rays is traced, a film is made or triangles are sorted out, which
+    /// would disturb a measurement.
     pub fn is_checking(&self) -> bool {
-        self.checks.running.is_some() || self.checks.checking.is_some() || self.ray_list.tracing.is_some()
+        self.checks.running.is_some()
+            || self.checks.checking.is_some()
+            || self.ray_list.tracing.is_some()
+            || self.filming.making.is_some()
+            || self.hiding.is_some()
     }
 
     /// Width over height of the viewport.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::fitting::Fit;
+use super::ranges::Fit;
 use super::{Asked, State};
 use crate::accel::BuildError;
 use crate::accel::registry;
@@ -13,7 +13,7 @@ use crate::task::Cancelled;
 use crate::viewer::gpu::Overlay;
 use crate::viewer::kept::{Built, Key};
 use crate::viewer::overlay::{Collected, Known, Wanted};
-use crate::viewer::panes::{PaneChoice, Pauses};
+use crate::viewer::panes::{PaneChoice, Pauses, Shows};
 use crate::viewer::settings::{BoxColor, OverlaySettings, Workspace};
 use crate::viewer::shown;
 use crate::viewer::workers::{self, Building, Collecting};
@@ -101,7 +101,10 @@ impl State {
     /// Chooses the second structure, or none at all beside the first.
     pub(super) fn put_beside(&mut self, id: Option<&'static str>) {
         match id.and_then(registry::find) {
-            Some(entry) => self.put_pane(0, PaneChoice::of(entry, &self.settings)),
+            Some(entry) => {
+                let shows = self.settings.panes.others.first().map_or_else(Shows::default, |first| first.shows);
+                self.put_pane(0, PaneChoice { shows, ..PaneChoice::of(entry, &self.settings) });
+            }
             None => {
                 self.settings.panes.others.clear();
                 self.settings.panes.dividers.clear();
@@ -150,8 +153,10 @@ impl State {
     /// Ends what would disturb a measurement, and keeps all renderers from running.
     pub(super) fn begin_measuring(&mut self) -> Pauses {
         self.panes.all.iter_mut().for_each(|pane| pane.building = None);
-        self.rays.following = None;
-        self.brute.clear();
+        (self.rays.following, self.rays.playing, self.filming.playing) = (None, None, None);
+        if self.brute.running.is_some() {
+            self.brute.clear();
+        }
         self.visiting.stop();
         if self.tree.outlining.take().is_some() {
             self.tree.of = None; // listed anew afterwards
@@ -215,6 +220,7 @@ impl State {
                     None
                 }
                 Outcome::Done(Err(BuildError::Cancelled(_))) => None,
+                Outcome::Done(Err(BuildError::Memory { .. })) if self.make_room() => None, // it is built again
                 Outcome::Done(Err(e)) => Some(super::finished::sentence(&e.to_string())),
                 Outcome::Died => Some("the builder failed. Please report this model.".to_owned()),
             };
@@ -257,7 +263,7 @@ impl State {
             pane.renderer = Renderer::new(self.trace_pool.clone(), move || wake()).ok();
         }
         let (Some(renderer), Some(built)) = (&pane.renderer, &pane.built) else { return };
-        if pane.requested.as_ref() != Some(&wanted) && !self.is_measuring() {
+        if pane.requested.as_ref() != Some(&wanted) && !self.is_measuring() && self.hidden.is_none() {
             let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&built.accel));
             let sampling = Sampling { kind: wanted.sampler, seed: 0 };
             let job = render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks));

@@ -134,6 +134,7 @@ impl State {
     pub(super) fn bring_back(&mut self) {
         let Some((file, _)) = self.saving.read.take() else { return };
         self.settings.take_view(&file.settings);
+        self.show_tiles(false);
         self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
         (self.camera, self.framed) = (file.camera, None);
         self.bookmarks = file.bookmarks;

@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use super::State;
 use crate::job::Outcome;
-use crate::render::{self, Mode};
-use crate::viewer::tiles::{self, TileView};
+use crate::render::{self, Mode, Picture};
+use crate::viewer::tiles::{self, Depths, TileView};
 
 impl State {
     /// The present view.
     fn tile_view(&self) -> Option<TileView> {
         let key = self.shown.as_ref()?.key.clone();
-        Some(TileView { key, camera: self.camera, size_px: self.size_px, rays: self.settings.heat_rays })
+        let (camera, section, size_px, rays) = (self.camera, self.section(), self.size_px, self.settings.heat_rays);
+        Some(TileView { key, camera, section, size_px, rays })
     }
 
     /// Whether what was timed is of another view, structure or kind of rays than the present.
@@ -34,7 +35,7 @@ impl State {
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
         let view = render::Job::new(scene, accel, self.camera, Mode::Nodes, Arc::clone(&model.looks));
-        let view = render::Job { heat_rays: of.rays, ..view };
+        let view = render::Job { heat_rays: of.rays, section: of.section, ..view };
         self.tiles.clear();
         match tiles::time(&self.shared, view, self.size_px, pause) {
             Ok(job) => self.tiles.running = Some((of, job)),
@@ -55,7 +56,7 @@ impl State {
         if let Some((range, job)) = self.tiles.drawing.take() {
             match job.poll() {
                 Outcome::Running => self.tiles.drawing = Some((range, job)),
-                Outcome::Done(picture) => self.tiles.picture = Some((range, Arc::new(picture))),
+                Outcome::Done((of, picture)) => self.tiles.picture = Some((range, of, Arc::new(picture))),
                 Outcome::Died => {
                     self.tiles.clear();
                     self.fail("Can't draw the tiles: it failed. Please report this.".to_owned());
@@ -65,7 +66,7 @@ impl State {
         if !self.tiles_await_drawing() {
             return;
         }
-        if let (Some(found), Some(present)) = (&self.tiles.found, &self.picture) {
+        if let (Some(found), Some(present)) = (&self.tiles.found, self.whole_picture()) {
             let drawing = tiles::draw(&self.shared, found.clone(), Arc::clone(present), self.range);
             self.tiles.drawing = drawing.ok().map(|job| (self.range, job));
         }
@@ -73,8 +74,17 @@ impl State {
 
     /// Whether the tiles on the screen are yet to be drawn, or in another range.
     fn tiles_await_drawing(&self) -> bool {
-        let current = self.tiles.picture.as_ref().is_some_and(|(range, _)| *range == self.range);
-        self.tiles.shown && self.tiles.found.is_some() && !self.tiles_are_old() && self.tiles.drawing.is_none() && !current
+        // Boxes are hidden by the depths of the picture, which are those of what is seen now.
+        let depth = self.whole_picture().map(|picture| &picture.depth);
+        let is_current = |of: &Depths| depth.is_none_or(|depth| Arc::ptr_eq(depth, of));
+        let current = self.tiles.picture.as_ref().is_some_and(|(range, of, _)| *range == self.range && is_current(of));
+        let there = self.tiles.found.is_some() && self.whole_picture().is_some();
+        self.tiles.shown && there && !self.tiles_are_old() && self.tiles.drawing.is_none() && !current
+    }
+
+    /// The picture of the present view, if it is no coarse one.
+    fn whole_picture(&self) -> Option<&Arc<Picture>> {
+        self.picture.as_ref().filter(|picture| picture.camera == self.camera && picture.progress.step == 1)
     }
 
     /// Whether something of them is on its way.

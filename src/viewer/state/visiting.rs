@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::State;
+use crate::geometry::HalfSpace;
 use crate::job::{Job, Outcome};
 use crate::lab::Visits;
 use crate::render::{self, Mode};
@@ -11,8 +12,8 @@ use crate::task::Cancelled;
 use crate::viewer::kept::Key;
 use crate::viewer::settings::BoxColor;
 
-/// What visits are of: the structure, from where it is seen, and the size of the view in pixels.
-type Of = (Key, Camera, [u32; 2]);
+/// What visits are of: the structure, from where it is seen, what of it, and the size of the view in pixels.
+type Of = (Key, Camera, Option<HalfSpace>, [u32; 2]);
 
 /// Visits of the shown structure.
 #[derive(Default)]
@@ -45,7 +46,7 @@ impl State {
     }
 
     fn visited_view(&self) -> Option<Of> {
-        Some((self.shown.as_ref()?.key.clone(), self.camera, self.size_px))
+        Some((self.shown.as_ref()?.key.clone(), self.camera, self.section(), self.size_px))
     }
 
     /// Whether they are wanted of the present view and not there.
@@ -85,7 +86,8 @@ impl State {
         }
         let (Some(of), Some(model), Some(shown)) = (self.visited_view(), &self.model, &self.shown) else { return };
         let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        let view = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
+        let whole = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
+        let view = render::Job { section: self.section(), ..whole };
         let (pool, size_px) = (self.shared.pool.clone(), self.size_px);
         let job = Job::spawn("visits", self.shared.waker(), move |cancel, progress| {
             Visits::of_view(&view, size_px, &pool, cancel, progress)
