@@ -268,7 +268,7 @@ fn what_begins_and_ends_is_announced() {
     w.open_path("builtin:no-such-scene");
     w.until("a message", |s| s.error.is_some());
     w.step();
-    let error = w.harness.get_by(|n| n.live() == Live::Assertive);
+    let error = w.harness.get_by(|n| n.live() == Live::Assertive && n.role() == Role::Label);
     assert!(error.accesskit_node().label().or(error.accesskit_node().value()).is_some_and(|text| text.contains("no-such-scene")));
 }
 

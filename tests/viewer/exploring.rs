@@ -10,7 +10,8 @@ use crate::window::{Setup, Window};
 
 /// A window in the Structure workspace; that took one click.
 fn open(model: &str) -> Window {
-    let mut setup = Setup { size: vec2(1280.0, 800.0), ..Setup::default() };
+    // As tall as what is said of a node: scrolling is another thing.
+    let mut setup = Setup { size: vec2(1280.0, 1200.0), ..Setup::default() };
     setup.options.model = Some(model.to_owned());
     let mut w = Window::new(setup).settled();
     w.button("Structure workspace");

@@ -38,7 +38,7 @@ const ALWAYS: [&str; 12] =
     ["File", "View", "Window", "Help", "SCENE", "TIMINGS", "Measure", "BVH", "k-d", "Grid", "Brute", "Shaded"];
 
 /// What stands beside the bar because it belongs to the panel there.
-const BESIDE: [&str; 12] = [
+const BESIDE: [&str; 13] = [
     "Statistics",
     "Findings",
     "Check this model",
@@ -51,6 +51,7 @@ const BESIDE: [&str; 12] = [
     "Copy",
     "Open rays…",
     "Close rays",
+    "Save statistics",
 ];
 
 fn open(case: &Case, options: impl FnOnce(&mut Setup)) -> Window {

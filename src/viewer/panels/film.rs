@@ -5,7 +5,7 @@ use eframe::egui::{
     UiBuilder, WidgetInfo, vec2,
 };
 
-use super::{Commands, empty};
+use super::Commands;
 use crate::lab::film::{Film, Order, is_reinserted};
 use crate::viewer::actions;
 use crate::viewer::command::Command;
@@ -58,8 +58,11 @@ fn offer(ui: &mut Ui, state: &State, commands: &mut Commands) {
             commands.push(Command::MakeFilm);
         }
         match &state.filming.failed {
-            Some(why) => drop(ui.label(RichText::new(why).color(Palette::in_ui(ui).warn))),
-            None => empty(ui, "The build, in reconstructed order."),
+            Some(why) => drop(ui.add(Label::new(RichText::new(why).color(Palette::in_ui(ui).warn)).extend())),
+            None => {
+                let text = RichText::new("The build, in reconstructed order.").color(Palette::in_ui(ui).dim);
+                ui.add(Label::new(text).extend());
+            }
         }
     });
     ui.take_available_space();

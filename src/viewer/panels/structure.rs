@@ -8,6 +8,7 @@ use crate::accel::registry::{self, Entry};
 use crate::geometry::tri::TestKind;
 use crate::viewer::command::Command;
 use crate::viewer::state::State;
+use crate::viewer::theme;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -34,7 +35,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
 
 fn choice(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let chosen = state.settings.entry();
-    let combo = ComboBox::from_id_salt("structure").selected_text(chosen.name).width(ui.available_width());
+    let combo = ComboBox::from_id_salt("structure").height(theme::LONG_MENU);
+    let combo = combo.selected_text(chosen.name).width(ui.available_width());
     let response = combo.show_ui(ui, |ui| {
         for entry in registry::ALL {
             if ui.selectable_label(entry.id == chosen.id, entry.name).on_hover_text(entry.help).clicked() {
@@ -130,7 +132,7 @@ fn options_of(
     value: &mut &'static str,
 ) -> bool {
     let before = *value;
-    let list = ComboBox::from_id_salt(param.id).selected_text(*value).show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt(param.id).height(theme::LONG_MENU).selected_text(*value).show_ui(ui, |ui| {
         for option in options {
             ui.selectable_value(value, *option, *option);
         }

@@ -100,8 +100,8 @@ fn head(ui: &mut Ui, state: &State, column: By, commands: &mut Commands) {
     let terms = &state.terms_of_timings;
     let (sign, order) = match (terms.column == column, terms.grows()) {
         (false, _) => ("", ""),
-        (true, true) => (" \u{2b06}", ", ascending"),
-        (true, false) => (" \u{2b07}", ", descending"),
+        (true, true) => (" ^", ", ascending"),
+        (true, false) => (" v", ", descending"),
     };
     let text = RichText::new(format!("{}{sign}", column.name())).small();
     // In the order in which they are listed, rows are not said to be sorted.

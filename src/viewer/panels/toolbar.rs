@@ -187,7 +187,7 @@ fn second(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
     });
-    let help = "Compare with this structure: the same view in the same colours.";
+    let help = "Compare with this structure on the same view.";
     combo.response.accessible_name("Second structure").on_hover_text(help);
 }
 

@@ -30,7 +30,10 @@ pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
         });
         combo.response.accessible_name("Error of intersections");
     } else {
-        let combo = ComboBox::from_id_salt("goodness").width(48.0 * theme::GRID).selected_text(trade.goodness.name());
+        let combo = ComboBox::from_id_salt("goodness")
+            .width(48.0 * theme::GRID)
+            .height(theme::LONG_MENU)
+            .selected_text(trade.goodness.name());
         let combo = combo.show_ui(ui, |ui| {
             for goodness in Goodness::ALL {
                 if ui.selectable_label(goodness == trade.goodness, goodness.name()).clicked() {

@@ -55,9 +55,9 @@ impl State {
     /// Follows the ray of a row.
     pub(super) fn follow_listed(&mut self, row: u32) {
         let Some((_, ray, _)) = self.ray_list.row(row) else { return };
-        (self.ray_list.chosen, self.ray_list.moved) = (Some(row), self.ray_list.moved + 1);
         self.rays.kind = RayKind::Primary;
         self.follow_anew(ray);
+        (self.ray_list.chosen, self.ray_list.moved) = (Some(row), self.ray_list.moved + 1);
     }
 
     pub(super) fn advance_ray_list(&mut self) {
@@ -90,7 +90,7 @@ impl State {
                 self.ray_list.file = Some(file);
                 self.carry_out(Command::Workspace(Workspace::Ray));
             }
-            Outcome::Done(Err(why)) => self.fail(sentence(&why)),
+            Outcome::Done(Err(why)) => self.fail(format!("{} Your scene is unchanged.", sentence(&why))),
             Outcome::Died => self.fail("Can't open the rays: reading them failed. Please report this file.".to_owned()),
         }
         self.ray_list.reading = None;
