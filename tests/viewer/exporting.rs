@@ -77,6 +77,26 @@ fn the_figure_has_the_picture_and_its_boxes() {
 }
 
 #[test]
+fn the_figure_of_a_film_says_where_it_stands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("film.svg"));
+    w.button("Structure workspace");
+    w.until("the cells are listed", |s| s.tree.outline.is_some());
+    w.settle();
+    w.button("Make the film");
+    w.until("the film", |s| s.filming.film.is_some());
+    w.settle();
+    w.button("Forward");
+    w.settle();
+    w.button("File");
+    w.button("Save figure…");
+    let svg = fs::read_to_string(written(&mut w, "Figure")).expect("there");
+    let last = w.state().filming.last();
+    assert!(svg.contains(&format!("<title>BVH, reconstructed order, event 1 of {last}, SAH cost ")), "{last}");
+    assert!(!svg.contains("at depth"));
+}
+
+#[test]
 fn the_picture_is_as_large_as_the_view() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut w = window(&folder.path().join("view.png"));
