@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use boxwood::lab::Fairness;
+use boxwood::viewer::panes::Arrange;
 use boxwood::viewer::timings::Column;
 use boxwood::viewer::tradeoffs::Plot;
 use eframe::egui::{Key, Modifiers, Role, vec2};
@@ -106,6 +107,26 @@ fn the_picture_is_as_large_as_the_view() {
     assert!(picture.starts_with(b"\x89PNG"));
     let [width, height] = w.state().size_px.map(u32::to_be_bytes);
     assert_eq!((&picture[16..20], &picture[20..24]), (&width[..], &height[..]));
+}
+
+#[test]
+fn compared_pictures_are_saved_as_they_stand() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arrange, [across, down]) in [(Arrange::Divider, [1, 1]), (Arrange::Two, [2, 1]), (Arrange::Four, [2, 2])] {
+        let answer = folder.path().join(format!("{arrange:?}.png"));
+        let mut setup = Setup { size: vec2(1400.0, 900.0), answer: Some(answer), ..Setup::default() };
+        setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
+        setup.options.samples = Some(1);
+        setup.options.panes = ["bvh", "kdtree"].map(str::to_owned).to_vec();
+        setup.options.arrange = Some(arrange);
+        let mut w = Window::new(setup).settled();
+        w.button("File");
+        w.button("Save picture…");
+        let picture = fs::read(written(&mut w, "Picture")).expect("there");
+        let [width, height] = w.state().size_px;
+        let [width, height] = [width * across, height * down].map(u32::to_be_bytes);
+        assert_eq!((&picture[16..20], &picture[20..24]), (&width[..], &height[..]), "{arrange:?}");
+    }
 }
 
 #[test]

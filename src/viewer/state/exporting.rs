@@ -16,6 +16,7 @@ use crate::scene::{CameraSpec, LoadCx};
 use crate::task::{Cancel, Progress};
 use crate::viewer::exports::{Export, Form, Writing};
 use crate::viewer::figure::Figure;
+use crate::viewer::mosaic::Mosaic;
 use crate::viewer::workers::Shared;
 use crate::viewer::{figure, files, plots, sheets};
 
@@ -89,6 +90,9 @@ impl State {
                 }) as Make
             }),
             Export::Figure => Figure::of(self).map(|figure| Box::new(move |cancel: &Cancel| figure.svg(cancel)) as Make),
+            Export::Picture if self.is_comparing() => {
+                Mosaic::of(self).map(|mosaic| Box::new(move |cancel: &Cancel| mosaic.png(cancel)) as Make)
+            }
             Export::Picture => self.on_screen().cloned().map(|picture| Box::new(move |_: &Cancel| figure::png(&picture)) as Make),
         };
         let Some(make) = started else {
