@@ -54,6 +54,24 @@ fn tables_are_saved_as_csv() {
 }
 
 #[test]
+fn what_holds_memory_is_saved_part_by_part() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("memory.csv"));
+    w.button("Check workspace");
+    w.settle();
+    w.click(Role::DisclosureTriangle, "Memory");
+    w.settle();
+    w.button("Save memory");
+    w.button("Table as CSV…");
+    let text = fs::read_to_string(written(&mut w, "Memory")).expect("there");
+    let bytes = w.state().shown.as_ref().and_then(|shown| shown.stats.as_ref()).map(|stats| stats.bytes()).expect("counted");
+    let parts = text.lines().filter(|line| line.starts_with("bvh,test=watertight,"));
+    let sum: u64 = parts.filter_map(|line| line.rsplit(',').next()?.parse::<u64>().ok()).sum();
+    assert_eq!(sum, bytes, "{text}");
+    assert!(text.contains("budget,,limit,") && text.contains("model,,triangles,"), "{text}");
+}
+
+#[test]
 fn plots_are_saved_as_svg_and_png() {
     let folder = tempfile::tempdir().expect("a folder");
     for (item, ending, begins) in [("Plot as SVG…", "svg", &b"<svg"[..]), ("Plot as PNG…", "png", &b"\x89PNG"[..])] {
