@@ -67,24 +67,33 @@ impl Sheet {
 
     /// As comma-separated values (RFC 4180), the names of the columns first. What is missing or not finite is empty.
     pub fn csv(&self) -> String {
-        let mut out = self.columns.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(",");
-        out += "\r\n";
+        let mut out = self.csv_head();
+        self.csv_rows(&mut out);
+        out
+    }
+
+    /// The first line of that: the names of the columns.
+    pub fn csv_head(&self) -> String {
+        self.columns.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(",") + "\r\n"
+    }
+
+    /// The lines after it, added to those that are there: of a table that is written in parts.
+    pub fn csv_rows(&self, out: &mut String) {
         for row in &self.rows {
             for (k, field) in row.iter().enumerate() {
                 if k > 0 {
                     out.push(',');
                 }
                 match field {
-                    Field::Text(text) => out += &quoted(text),
+                    Field::Text(text) => out.push_str(&quoted(text)),
                     // Writing to a string does not fail.
                     Field::Number(number) if number.is_finite() => drop(write!(out, "{number}")),
                     Field::Count(count) => drop(write!(out, "{count}")),
                     Field::Number(_) | Field::Missing => {}
                 }
             }
-            out += "\r\n";
+            out.push_str("\r\n");
         }
-        out
     }
 }
 

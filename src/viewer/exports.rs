@@ -20,7 +20,7 @@ pub enum Export {
     Plot(What, Form),
     /// The view with its boxes as lines, as SVG.
     Figure,
-    /// The traced picture alone, as PNG.
+    /// The traced picture alone, or all compared ones as they stand, as PNG.
     Picture,
 }
 

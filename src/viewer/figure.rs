@@ -1,5 +1,9 @@
-//! The view as a figure: the traced picture with boxes, planes and rays over it as lines, those behind a surface dashed, and a
-//! caption that says what it shows.
+//! The view as a figure: the traced picture with boxes, planes, other forms and rays over it as lines, those behind a surface
+//! dashed, and a caption that says what it shows.
+
+mod clip;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -47,11 +51,12 @@ impl Figure {
         let (model, picture) = (state.model.as_ref()?, state.on_screen()?);
         let [width, height] = state.size_px;
         let space = *model.geometry.space();
+        let section = state.section().map(|section| section.scaled(&space));
         Some(Self {
             picture: Arc::clone(picture),
             overlay: state.shown.as_ref().and(state.overlay.clone()),
             marks: rays_over::marks(state).into_owned(),
-            view: View::new(&picture.camera, &space, width as f32 / height.max(1) as f32),
+            view: View::new(&picture.camera, &space, width as f32 / height.max(1) as f32).within(section),
             space,
             size: [width.max(1), height.max(1)],
             hidden_lines: state.settings.overlay.hidden_lines,
@@ -88,36 +93,55 @@ impl Figure {
         Ok(out.into_bytes())
     }
 
-    /// Boxes and planes by colour, then the selected one over all.
+    /// Boxes, planes and lines by colour, then what stands out over all.
     fn boxes(&self, overlay: &Overlay, out: &mut String, cancel: &Cancel) -> Result<(), String> {
-        let mut by_color: BTreeMap<[u8; 4], Lines> = BTreeMap::new();
-        for instance in overlay.planes.iter().chain(&overlay.tried) {
-            self.fill(instance, out);
+        let go_on = || cancel.check().map_err(|_| "Stopped.".to_owned());
+        for plane in overlay.planes.iter().chain(&overlay.tried) {
+            go_on()?;
+            self.fill_plane(plane, out);
         }
-        for instance in overlay.boxes.iter().chain(&overlay.planes).chain(&overlay.tried) {
-            cancel.check().map_err(|_| "Stopped.".to_owned())?;
+        for triangle in &overlay.fills {
+            go_on()?;
+            self.fill_triangle(triangle, out);
+        }
+        let mut by_color: BTreeMap<[u8; 4], Lines> = BTreeMap::new();
+        let boxes = overlay.boxes.iter().chain(&overlay.planes).chain(&overlay.tried);
+        for instance in boxes.chain(&overlay.lines).chain(&overlay.compared) {
+            go_on()?;
             self.edges(instance, by_color.entry(instance.color).or_default());
         }
         for (color, lines) in &by_color {
             self.strokes(lines, &LineStyle::BOX, [color[0], color[1], color[2]], out);
         }
-        if let Some(selected) = &overlay.selected {
-            let mut lines = Lines::default();
-            self.edges(selected, &mut lines);
-            self.strokes(&lines, &LineStyle::SELECTED, LineStyle::SELECTED.color.unwrap_or_default(), out);
+        let mut lines = Lines::default();
+        let lit = overlay.lit.iter().chain(&overlay.lit_lines);
+        for instance in lit.chain(&overlay.selected).chain(&overlay.selected_lines) {
+            go_on()?;
+            self.edges(instance, &mut lines);
         }
+        self.strokes(&lines, &LineStyle::SELECTED, LineStyle::SELECTED.color.unwrap_or_default(), out);
         Ok(())
     }
 
-    /// The inside of a plane, if all of it is before the eye.
-    fn fill(&self, plane: &BoxInstance, out: &mut String) {
+    /// The inside of a plane.
+    fn fill_plane(&self, plane: &BoxInstance, out: &mut String) {
         let [a, b] = flat_sides(plane);
-        let corners = [Vec3::ZERO, a, a + b, b].map(|along| self.view.seen(plane.at(along)));
-        if corners.iter().any(|corner| corner.z < self.view.range[0]) {
+        self.fill(&[Vec3::ZERO, a, a + b, b].map(|along| plane.at(along)), plane.color, out);
+    }
+
+    /// The inside of a triangle.
+    fn fill_triangle(&self, triangle: &BoxInstance, out: &mut String) {
+        self.fill(&[Vec3::ZERO, Vec3::X, Vec3::Y].map(|along| triangle.at(along)), triangle.color, out);
+    }
+
+    /// What the section leaves of a convex polygon, if all of that is before the eye.
+    fn fill(&self, corners: &[Vec3], [r, g, b, _]: [u8; 4], out: &mut String) {
+        let corners = clip::polygon(self.view.section.as_ref(), corners);
+        let seen: Vec<Vec3> = corners.into_iter().map(|corner| self.view.seen(corner)).collect();
+        if seen.is_empty() || !seen.iter().all(|corner| corner.z >= self.view.range[0]) {
             return;
         }
-        let [r, g, b, _] = plane.color;
-        let points: String = corners.map(|c| self.on_figure(c)).iter().map(|p| format!("{:.1},{:.1} ", p.x, p.y)).collect();
+        let points: String = seen.iter().map(|c| self.on_figure(*c)).map(|p| format!("{:.1},{:.1} ", p.x, p.y)).collect();
         let _ = writeln!(
             out,
             "<polygon points=\"{}\" fill=\"#{r:02x}{g:02x}{b:02x}\" fill-opacity=\"{PLANE_FILL}\"/>",
@@ -125,7 +149,7 @@ impl Figure {
         );
     }
 
-    /// The edges of a box, of a flat one those of its face.
+    /// The edges of a box, of a flat one those of its face, of a line the one that it is; as far as the section leaves them.
     fn edges(&self, instance: &BoxInstance, lines: &mut Lines) {
         let thick = |axis: usize| instance.edges[axis] != [0.0; 3];
         for axis in (0..3).filter(|axis| thick(*axis)) {
@@ -139,7 +163,10 @@ impl Figure {
                 (0..2).for_each(|k| from[others[k]] = (corner >> k & 1) as f32);
                 let mut to = from;
                 to[axis] = 1.0;
-                self.line([from, to].map(|along| self.view.seen(instance.at(along))), lines);
+                let ends = [from, to].map(|along| instance.at(along));
+                if let Some(ends) = clip::line(self.view.section.as_ref(), ends) {
+                    self.line(ends.map(|end| self.view.seen(end)), lines);
+                }
             }
         }
     }
@@ -245,12 +272,17 @@ fn flat_sides(plane: &BoxInstance) -> [Vec3; 2] {
     [next(), next()]
 }
 
-/// `BVH, boxes at depth 3, SAH cost 31.2. builtin:teapot, 1 000 triangles.`
+/// `BVH, boxes at depth 3, SAH cost 31.2. builtin:teapot, 1 000 triangles.`; while a film of the build is shown, where that stands
+/// and the cost there.
 fn caption(state: &State) -> String {
     let overlay = &state.settings.overlay;
     let mut text = state.shown.as_ref().map_or_else(String::new, |shown| shown.key.entry.name.to_owned());
     let is_tree = !matches!(state.layout(), Some(Layout::Flat { .. } | Layout::Nested { .. }));
-    if overlay.boxes && overlay.leaves_only {
+    let film = state.film_on_screen();
+    if let Some((film, at)) = film {
+        let [at, last] = [at, film.last()].map(|event| format::count(event.into()));
+        text += &format!(", reconstructed order, event {at} of {last}");
+    } else if overlay.boxes && overlay.leaves_only {
         text += ", boxes of leaves";
     } else if overlay.boxes && is_tree {
         let to = overlay.depth;
@@ -261,8 +293,9 @@ fn caption(state: &State) -> String {
     } else if overlay.boxes {
         text += ", cells";
     }
-    if let Some(stats) = state.shown.as_ref().and_then(|shown| shown.stats.as_ref()) {
-        text += &format!(", SAH cost {}", format::number(stats.sah));
+    let finished = state.shown.as_ref().and_then(|shown| shown.stats.as_ref()).map(|stats| stats.sah);
+    if let Some(cost) = film.map(|(film, at)| film.cost(at)).or(finished) {
+        text += &format!(", SAH cost {}", format::number(cost));
     }
     if let Some(model) = &state.model {
         text += &format!(". {}, {} triangles.", model.scene.name, format::count(model.geometry.counts().live));
@@ -275,16 +308,27 @@ fn caption(state: &State) -> String {
 /// # Errors
 /// In words; there is none that an ordinary picture gives.
 pub fn png(picture: &Picture) -> Result<Vec<u8>, String> {
+    encoded(&picture.rgba, [picture.width, picture.height])
+}
+
+/// The same of four bytes a pixel, which opacity has been multiplied into; so many columns and rows.
+///
+/// # Errors
+/// In words, if there are not as many bytes.
+pub fn encoded(rgba: &[u8], [width, height]: [u32; 2]) -> Result<Vec<u8>, String> {
     // Files hold colours that opacity has not been multiplied into.
     let plain = |rgba: &[u8; 4]| {
         let [r, g, b, a] = *rgba;
         let divided = |c: u8| u8::try_from(u32::from(c) * 255 / u32::from(a.max(1))).unwrap_or(u8::MAX);
         [divided(r), divided(g), divided(b), a]
     };
-    let bytes: Vec<u8> = picture.rgba.as_chunks::<4>().0.iter().flat_map(plain).collect();
+    let bytes: Vec<u8> = rgba.as_chunks::<4>().0.iter().flat_map(plain).collect();
+    if bytes.len() as u64 != u64::from(width) * u64::from(height) * 4 {
+        return Err("Can't make the picture: it is not whole.".to_owned()); // the encoder would panic
+    }
     let mut png = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut png);
-    image::ImageEncoder::write_image(encoder, &bytes, picture.width, picture.height, image::ExtendedColorType::Rgba8)
+    image::ImageEncoder::write_image(encoder, &bytes, width, height, image::ExtendedColorType::Rgba8)
         .map_err(|why| format!("Can't make the picture: {why}."))?;
     Ok(png)
 }
@@ -292,88 +336,4 @@ pub fn png(picture: &Picture) -> Result<Vec<u8>, String> {
 /// Text between tags.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::Aabb;
-    use crate::render::Range;
-    use crate::scene::{Camera, Projection};
-
-    /// A view along -z of a box in the middle, its right half behind a surface that is near.
-    fn figure() -> Figure {
-        let space = Space::new(&Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE });
-        let camera =
-            Camera { eye: Vec3::Z * 4.0, target: Vec3::ZERO, up: Vec3::Y, projection: Projection::Perspective { fov_y: 1.0 } };
-        let size = [40u32, 20];
-        let depth = (0..800).map(|i| if i % 40 >= 20 { 0.1 } else { f32::INFINITY }).collect();
-        let picture = Picture {
-            generation: 1,
-            request: 1,
-            camera,
-            width: size[0],
-            height: size[1],
-            rgba: vec![0; 3200],
-            depth: Arc::new(depth),
-            range: Range { min: 0.0, max: 1.0 },
-            progress: crate::render::Progress::default(),
-            amounts: None,
-            suits: Range { min: 0.0, max: 1.0 },
-            shots: Vec::new(),
-        };
-        let cell = Aabb { min: Vec3::splat(-0.2), max: Vec3::splat(0.2) };
-        let overlay = Overlay { boxes: vec![BoxInstance::new(&cell, [9, 8, 7, 255])], ..Overlay::default() };
-        Figure {
-            picture: Arc::new(picture),
-            overlay: Some(Arc::new(overlay)),
-            marks: Vec::new(),
-            view: View::new(&camera, &space, 2.0),
-            space,
-            size,
-            hidden_lines: true,
-            caption: "a <b> & c".to_owned(),
-        }
-    }
-
-    fn text(figure: &Figure) -> String {
-        String::from_utf8(figure.svg(&Cancel::new()).expect("made")).expect("text")
-    }
-
-    #[test]
-    fn what_is_behind_a_surface_is_dashed_and_can_be_left_out() {
-        let mut figure = figure();
-        let svg = text(&figure);
-        assert!(svg.contains("a &lt;b&gt; &amp; c") && svg.contains("data:image/png;base64,"));
-        assert_eq!((svg.matches("stroke-dasharray").count(), svg.matches("stroke=\"#090807\"").count()), (1, 2));
-        assert!(!svg.contains("NaN") && resvg::usvg::Tree::from_str(&svg, &resvg::usvg::Options::default()).is_ok());
-        figure.hidden_lines = false;
-        assert!(!text(&figure).contains("stroke-dasharray"));
-        let stopped = Cancel::new();
-        stopped.cancel();
-        assert!(figure.svg(&stopped).is_err());
-    }
-
-    #[test]
-    fn a_flat_box_has_four_edges_and_a_box_has_twelve() {
-        let figure = figure();
-        let lines = |size: Vec3| {
-            let mut lines = Lines::default();
-            // Left of the middle, where nothing is in front.
-            let cell = Aabb { min: Vec3::new(-0.3, -0.1, 0.0), max: Vec3::new(-0.3, -0.1, 0.0) + size };
-            figure.edges(&BoxInstance::new(&cell, [0; 4]), &mut lines);
-            lines.visible.matches('M').count()
-        };
-        assert_eq!((lines(Vec3::splat(0.1)), lines(Vec3::new(0.1, 0.1, 0.0)), lines(Vec3::X * 0.1)), (12, 4, 1));
-    }
-
-    #[test]
-    fn pictures_keep_their_colours_where_they_are_half_clear() {
-        let mut figure = figure();
-        let picture = Arc::get_mut(&mut figure.picture).expect("ours alone");
-        picture.rgba[..8].copy_from_slice(&[64, 32, 0, 128, 10, 20, 30, 255]);
-        let read = image::load_from_memory(&png(picture).expect("made")).expect("a picture").into_rgba8();
-        assert_eq!((read.get_pixel(0, 0).0, read.get_pixel(1, 0).0), ([127, 63, 0, 128], [10, 20, 30, 255]));
-        assert_eq!(read.dimensions(), (40, 20));
-    }
 }

@@ -23,6 +23,7 @@ pub mod history;
 mod kept;
 mod marks;
 pub mod model;
+mod mosaic;
 pub mod navigation;
 mod options;
 mod overlay;

@@ -22,6 +22,7 @@ pub fn panels(state: &State, what: What) -> Option<Vec<Panel>> {
     };
     match what {
         What::Timings | What::Needs | What::Steps | What::Stability => None,
+        What::Findings | What::Memory | What::Volumes | What::Rays | What::Check => None,
         What::Statistics => Some(histograms(state, &title)),
         What::Division => Some(vec![curves_of_division(curves(state)?, title("SAH cost of dividing the selected node"))]),
         What::Errors => Some(curves_of_errors(state, &title)),

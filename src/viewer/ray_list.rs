@@ -21,7 +21,7 @@ pub struct RayList {
     /// The rays, and what the file is called; nothing if none is open.
     pub file: Option<Listed>,
     /// What they do in a structure.
-    pub traced: Option<Traced>,
+    pub traced: Option<Arc<Traced>>,
     /// The file, on its way.
     pub reading: Option<Reading>,
     /// What they do, on its way, and in which structure.

@@ -1,5 +1,9 @@
 //! The tables of the window as they are saved: every figure as exactly as it is known, with its unit over the column.
 
+mod findings;
+mod holdings;
+mod listed;
+
 use super::rays::Column;
 use super::state::State;
 use super::timings::secs_of_sample;
@@ -8,6 +12,7 @@ use crate::accel::{Prune, Step};
 use crate::geometry::Axis;
 use crate::lab::converge::Reference;
 use crate::lab::{Fairness, Field, RayKind, SahCurves, Sheet, Timing};
+pub use listed::ListedRays;
 
 /// A table or plot of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,12 +21,20 @@ pub enum What {
     Timings,
     /// Figures of the shown structure, and what is predicted of rays in it.
     Statistics,
+    /// Why rays are slow.
+    Findings,
     /// What the model uses and what is left out.
     Needs,
+    /// What holds how much memory.
+    Memory,
     /// The cost of every division of the selected node.
     Division,
+    /// Bounding volumes of the selected node.
+    Volumes,
     /// The steps of a ray.
     Steps,
+    /// The rays of a file.
+    Rays,
     /// The picture's error.
     Errors,
     /// Errors of tests of triangles and boxes.
@@ -32,21 +45,28 @@ pub enum What {
     Scaling,
     /// The matrix of the stability lab.
     Stability,
+    /// The check of the open model.
+    Check,
 }
 
 impl What {
     /// All, in the order of workspaces.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 15] = [
         Self::Timings,
         Self::Statistics,
+        Self::Findings,
         Self::Needs,
+        Self::Memory,
         Self::Division,
+        Self::Volumes,
         Self::Steps,
+        Self::Rays,
         Self::Errors,
         Self::Tests,
         Self::Quality,
         Self::Scaling,
         Self::Stability,
+        Self::Check,
     ];
 
     /// What it is called in menus and names of files.
@@ -54,14 +74,19 @@ impl What {
         match self {
             Self::Timings => "timings",
             Self::Statistics => "statistics",
+            Self::Findings => "findings",
             Self::Needs => "needs",
+            Self::Memory => "memory",
             Self::Division => "division",
+            Self::Volumes => "volumes",
             Self::Steps => "steps",
+            Self::Rays => "rays",
             Self::Errors => "errors",
             Self::Tests => "tests",
             Self::Quality => "quality",
             Self::Scaling => "scaling",
             Self::Stability => "stability",
+            Self::Check => "check",
         }
     }
 
@@ -73,15 +98,19 @@ impl What {
     /// Whether there is anything of it.
     pub fn is_there(self, state: &State) -> bool {
         match self {
-            Self::Timings => state.model.is_some(),
+            Self::Timings | Self::Memory => state.model.is_some(),
             Self::Statistics => state.shown.as_ref().is_some_and(|shown| shown.stats.is_some()),
             Self::Needs => state.model.as_ref().is_some_and(|model| !model.needs.is_empty()),
+            Self::Findings => state.causes.found.is_some(),
             Self::Division => curves(state).is_some(),
+            Self::Volumes => state.fitting().is_some(),
             Self::Steps => !state.rays.columns.is_empty(),
+            Self::Rays => state.ray_list.traced.is_some(),
             Self::Errors => !state.errors.curves.is_empty(),
             Self::Tests | Self::Quality => !state.tradeoffs.rows.is_empty(),
             Self::Scaling => !state.tradeoffs.scaling.is_empty(),
             Self::Stability => !state.checks.cases.is_empty(),
+            Self::Check => state.checks.model.is_some(),
         }
     }
 
@@ -102,7 +131,7 @@ pub(super) fn curves(state: &State) -> Option<&SahCurves> {
     state.curves.as_ref().and_then(|curves| curves.1.as_ref()).filter(|_| !hidden)
 }
 
-/// A table as it is saved; `None` where there is nothing of it.
+/// A table as it is saved; `None` where there is nothing of it, and of [`ListedRays`], which make their own.
 pub fn sheet(state: &State, what: What) -> Option<Sheet> {
     if !what.is_there(state) {
         return None;
@@ -110,14 +139,19 @@ pub fn sheet(state: &State, what: What) -> Option<Sheet> {
     Some(match what {
         What::Timings => timings(state),
         What::Statistics => statistics(state),
+        What::Findings => findings::causes(state.causes.found.as_ref()?),
         What::Needs => needs(state),
+        What::Memory => holdings::memory(state),
         What::Division => division(curves(state)?),
+        What::Volumes => findings::volumes(state.fitting()?.0),
         What::Steps => steps(&state.rays.columns),
+        What::Rays => return None,
         What::Errors => errors(state),
         What::Tests => tests(state),
         What::Quality => quality(state),
         What::Scaling => scaling(state),
         What::Stability => stability(state),
+        What::Check => findings::check(state.checks.model.as_ref()?),
     })
 }
 

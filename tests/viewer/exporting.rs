@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use boxwood::lab::Fairness;
+use boxwood::viewer::panes::Arrange;
 use boxwood::viewer::timings::Column;
 use boxwood::viewer::tradeoffs::Plot;
 use eframe::egui::{Key, Modifiers, Role, vec2};
@@ -53,6 +54,24 @@ fn tables_are_saved_as_csv() {
 }
 
 #[test]
+fn what_holds_memory_is_saved_part_by_part() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("memory.csv"));
+    w.button("Check workspace");
+    w.settle();
+    w.click(Role::DisclosureTriangle, "Memory");
+    w.settle();
+    w.button("Save memory");
+    w.button("Table as CSV…");
+    let text = fs::read_to_string(written(&mut w, "Memory")).expect("there");
+    let bytes = w.state().shown.as_ref().and_then(|shown| shown.stats.as_ref()).map(|stats| stats.bytes()).expect("counted");
+    let parts = text.lines().filter(|line| line.starts_with("bvh,test=watertight,"));
+    let sum: u64 = parts.filter_map(|line| line.rsplit(',').next()?.parse::<u64>().ok()).sum();
+    assert_eq!(sum, bytes, "{text}");
+    assert!(text.contains("budget,,limit,") && text.contains("model,,triangles,"), "{text}");
+}
+
+#[test]
 fn plots_are_saved_as_svg_and_png() {
     let folder = tempfile::tempdir().expect("a folder");
     for (item, ending, begins) in [("Plot as SVG…", "svg", &b"<svg"[..]), ("Plot as PNG…", "png", &b"\x89PNG"[..])] {
@@ -77,6 +96,26 @@ fn the_figure_has_the_picture_and_its_boxes() {
 }
 
 #[test]
+fn the_figure_of_a_film_says_where_it_stands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("film.svg"));
+    w.button("Structure workspace");
+    w.until("the cells are listed", |s| s.tree.outline.is_some());
+    w.settle();
+    w.button("Make the film");
+    w.until("the film", |s| s.filming.film.is_some());
+    w.settle();
+    w.button("Forward");
+    w.settle();
+    w.button("File");
+    w.button("Save figure…");
+    let svg = fs::read_to_string(written(&mut w, "Figure")).expect("there");
+    let last = w.state().filming.last();
+    assert!(svg.contains(&format!("<title>BVH, reconstructed order, event 1 of {last}, SAH cost ")), "{last}");
+    assert!(!svg.contains("at depth"));
+}
+
+#[test]
 fn the_picture_is_as_large_as_the_view() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut w = window(&folder.path().join("view.png"));
@@ -86,6 +125,26 @@ fn the_picture_is_as_large_as_the_view() {
     assert!(picture.starts_with(b"\x89PNG"));
     let [width, height] = w.state().size_px.map(u32::to_be_bytes);
     assert_eq!((&picture[16..20], &picture[20..24]), (&width[..], &height[..]));
+}
+
+#[test]
+fn compared_pictures_are_saved_as_they_stand() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arrange, [across, down]) in [(Arrange::Divider, [1, 1]), (Arrange::Two, [2, 1]), (Arrange::Four, [2, 2])] {
+        let answer = folder.path().join(format!("{arrange:?}.png"));
+        let mut setup = Setup { size: vec2(1400.0, 900.0), answer: Some(answer), ..Setup::default() };
+        setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
+        setup.options.samples = Some(1);
+        setup.options.panes = ["bvh", "kdtree"].map(str::to_owned).to_vec();
+        setup.options.arrange = Some(arrange);
+        let mut w = Window::new(setup).settled();
+        w.button("File");
+        w.button("Save picture…");
+        let picture = fs::read(written(&mut w, "Picture")).expect("there");
+        let [width, height] = w.state().size_px;
+        let [width, height] = [width * across, height * down].map(u32::to_be_bytes);
+        assert_eq!((&picture[16..20], &picture[20..24]), (&width[..], &height[..]), "{arrange:?}");
+    }
 }
 
 #[test]

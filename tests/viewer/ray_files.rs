@@ -78,6 +78,28 @@ fn a_file_is_listed_by_cost_and_its_rays_are_followed() {
 }
 
 #[test]
+fn the_list_is_saved_the_dearest_ray_first() {
+    let files = Files::new();
+    let path = files.missing("down.rays");
+    let mut w = open(Some(path.clone()));
+    let rays = rays(&w);
+    files.write("down.rays", text(&rays));
+    w.button("Ray workspace");
+    w.button("Open rays…");
+    w.until("the list", |s| s.ray_list.traced.is_some());
+    w.settle();
+    w.button("Save rays");
+    w.button("Table as CSV…");
+    w.until("a file", |s| s.exports.said.is_some() || s.error.is_some());
+    assert_eq!(w.state().error, None);
+    let saved = std::fs::read_to_string(path.with_file_name("down.rays.csv")).expect("with its ending");
+    let lines: Vec<&str> = saved.lines().collect();
+    assert_eq!(lines.len(), 1 + rays.len());
+    let (number, _, work) = w.state().ray_list.row(0).expect("a row");
+    assert!(lines[1].starts_with(&format!("{},bvh,{},{},", number + 1, work.nodes, work.tests)), "{}", lines[1]);
+}
+
+#[test]
 fn a_file_is_dropped_and_what_is_wrong_with_one_is_told() {
     let files = Files::new();
     let mut w = open(None);

@@ -2,12 +2,13 @@
 
 use eframe::egui::{Label, ProgressBar, RichText, Ui};
 
-use super::{Commands, empty, fact, heading, memory, needs, stability};
+use super::{Commands, empty, fact, heading, memory, needs, saves, stability};
 use crate::lab::stability::Row;
 use crate::lab::stability::cases::Case;
 use crate::lab::{Finding, MeshCheck, ModelCheck};
 use crate::viewer::command::Command;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -23,6 +24,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         Some(check) => {
             mesh(ui, &check.mesh);
             structures(ui, state, check, commands);
+            saves::show(ui, What::Check, state, commands);
         }
         None if state.checks.checking.is_none() => {
             empty(ui, "Slivers, copies, open edges; and where structures err on the rays of this view, beside exact arithmetic.");
@@ -31,7 +33,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
     ui.separator();
     needs::show(ui, state, commands);
-    memory::show(ui, state);
+    memory::show(ui, state, commands);
 }
 
 fn cell(ui: &mut Ui, case: &Case, row: &Row) {

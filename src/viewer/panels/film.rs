@@ -5,7 +5,7 @@ use eframe::egui::{
     UiBuilder, WidgetInfo, vec2,
 };
 
-use super::Commands;
+use super::{Commands, as_table};
 use crate::lab::film::{Film, Order, is_reinserted};
 use crate::viewer::actions;
 use crate::viewer::command::Command;
@@ -18,6 +18,8 @@ use crate::viewer::theme::{self, Palette};
 const PLOT: f32 = 0.4;
 /// What stands beside the slider: its value and its name.
 const BESIDE: f32 = 30.0 * theme::GRID;
+/// Parts of the film between the rows of its table.
+const PARTS: u32 = 10;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -28,12 +30,15 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let left = left.with_max_x(left.right() - theme::GUTTER);
     let mut hands = ui.new_child(UiBuilder::new().id_salt("film").max_rect(left));
     ScrollArea::vertical().auto_shrink(false).show(&mut hands, |ui| {
-        title(ui, film, commands);
+        let as_table = title(ui, film, commands);
         player(ui, state, commands);
         ui.add(Label::new(film.tell(at)).wrap());
         if state.shown.as_ref().is_some_and(|shown| is_reinserted(&shown.key.params)) {
             let text = "Then reinsertion moved nodes: which ones, the finished tree does not say.";
             ui.add(Label::new(RichText::new(text).small().color(Palette::in_ui(ui).dim)).wrap());
+        }
+        if as_table {
+            costs(ui, film);
         }
     });
     plot(ui, right, film, at, commands);
@@ -84,14 +89,30 @@ const fn help(order: Order) -> &'static str {
     }
 }
 
-fn title(ui: &mut Ui, film: &Film, commands: &mut Commands) {
-    ui.horizontal(|ui| {
+/// The order, the way out, and whether costs are wanted in rows.
+fn title(ui: &mut Ui, film: &Film, commands: &mut Commands) -> bool {
+    let row = ui.horizontal_wrapped(|ui| {
         label(ui);
         ui.label("Reconstructed order").on_hover_text(help(film.order()));
         if ui.button("Close").on_hover_text("Put the film away.").accessible_name("Close the film").clicked() {
             commands.push(Command::CloseFilm);
         }
+        as_table::choice(ui, "SAH cost over the film")
     });
+    row.inner
+}
+
+/// Events that are told in rows, evenly over a film, its start and end among them.
+fn told(last: u32) -> Vec<u32> {
+    let mut events: Vec<u32> = (0..=PARTS).map(|i| (u64::from(i) * u64::from(last) / u64::from(PARTS)) as u32).collect();
+    events.dedup();
+    events
+}
+
+/// The costs at a few events, in rows.
+fn costs(ui: &mut Ui, film: &Film) {
+    let row = |event: u32| [format::count(event.into()), format::number(film.cost(event))];
+    as_table::show(ui, "SAH cost over the film", ["Event", "SAH cost"], told(film.last()).into_iter().map(row));
 }
 
 /// Forward and back.
@@ -199,6 +220,14 @@ impl Scale {
 mod tests {
     use super::*;
     use eframe::egui::pos2;
+
+    #[test]
+    fn about_ten_events_are_told_from_the_start_to_the_end() {
+        assert_eq!(told(0), [0]);
+        assert_eq!(told(3), [0, 1, 2, 3]);
+        assert_eq!(told(50), [0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50]);
+        assert_eq!((told(u32::MAX).len(), told(u32::MAX).last()), (11, Some(&u32::MAX)));
+    }
 
     #[test]
     fn places_and_events_go_both_ways() {

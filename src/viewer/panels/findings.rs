@@ -2,10 +2,11 @@
 
 use eframe::egui::{Button, CollapsingHeader, Grid, Label, ProgressBar, RichText, Ui};
 
-use super::{Commands, empty, heading};
+use super::{Commands, empty, heading, saves};
 use crate::lab::findings::{Finding, Findings, LooseTriangle, PartCost};
 use crate::viewer::command::Command;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -30,6 +31,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         if state.causes_are_old() {
             empty(ui, "Of an earlier view.");
         }
+        saves::show(ui, What::Findings, state, commands);
     }
     if state.causes.found.is_none() || state.causes_are_old() {
         let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();

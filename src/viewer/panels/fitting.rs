@@ -2,10 +2,11 @@
 
 use eframe::egui::{Button, Grid, ProgressBar, RichText, Ui};
 
-use super::{Commands, empty, heading};
+use super::{Commands, empty, heading, saves};
 use crate::lab::{FitRow, Fitting};
 use crate::viewer::command::Command;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -60,6 +61,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         if old {
             empty(ui, "Of an earlier view.");
         }
+        saves::show(ui, What::Volumes, state, commands);
     }
     if let Some(note) = state.no_fitting() {
         empty(ui, note);

@@ -5,7 +5,7 @@ use eframe::egui::{
     vec2,
 };
 
-use super::{Commands, empty, fact, heading};
+use super::{Commands, as_table, empty, fact, heading};
 use crate::lab::tile_times::{REPEATS, TILE};
 use crate::render::{Amounts, Histogram, Mode, Picture, Range};
 use crate::viewer::command::Command;
@@ -38,6 +38,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let other = state.tiles.shown && !state.shows_tiles();
     if let Some((picture, amounts)) = state.on_screen().filter(|_| !other).and_then(|p| Some((p, p.amounts.as_ref()?))) {
         ends(ui, state, picture, &amounts.histogram, commands);
+        if as_table::choice(ui, "heat map") {
+            bins(ui, &amounts.histogram);
+        }
         typed(ui, state, picture.range, amounts, commands);
         let help = "The amount of the pixel that was last clicked. Under the pointer it is told beside the colours, where one picture is shown.";
         fact(ui, "Clicked pixel", format::or_missing(state.clicked_amount(), |x| format::number(x.into())), help);
@@ -121,6 +124,16 @@ fn ends(ui: &mut Ui, state: &State, picture: &Picture, histogram: &Histogram, co
         let max = high.map_or(range.max, |high| high.max(range.min + LEAST_SPAN));
         commands.push(Command::HeatRange(Some(Range { min, max })));
     }
+}
+
+/// The bins in which there are pixels, in rows.
+fn bins(ui: &mut Ui, histogram: &Histogram) {
+    let row = |(i, pixels): (usize, &u32)| {
+        let [from, to] = [i, i + 1].map(|i| format::number(i as f64 * f64::from(histogram.width)));
+        [from, to, format::count(u64::from(*pixels))]
+    };
+    let filled = histogram.counts.iter().enumerate().filter(|(_, pixels)| **pixels > 0);
+    as_table::show(ui, "heat map", ["From", "to below", "Pixels"], filled.map(row));
 }
 
 /// A bar for each bin, in the colour that its amounts have.

@@ -2,9 +2,10 @@
 
 use eframe::egui::{CollapsingHeader, Ui};
 
-use super::fact;
+use super::{Commands, fact, saves};
 use crate::accel::stats::Stats;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 
 /// The bytes of a structure, and of each of its parts.
@@ -25,7 +26,7 @@ pub fn of_structure(ui: &mut Ui, stats: &Stats, triangles: usize) {
 }
 
 /// What is held of the budget, and what holds it.
-pub fn show(ui: &mut Ui, state: &State) {
+pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     CollapsingHeader::new("Memory").id_salt("memory").show(ui, |ui| {
         let (used, limit) = state.memory();
         let help = "What models, structures and lists hold of the memory budget, which View > Memory sets.";
@@ -52,5 +53,6 @@ pub fn show(ui: &mut Ui, state: &State) {
         if let Some(stats) = state.shown.as_ref().and_then(|shown| shown.stats.as_ref()) {
             of_structure(ui, stats, state.model.as_ref().map_or(0, |model| model.geometry.stored_live()));
         }
+        saves::show(ui, What::Memory, state, commands);
     });
 }

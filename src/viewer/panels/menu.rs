@@ -170,7 +170,12 @@ fn exports(ui: &mut Ui, state: &State, commands: &mut Commands) {
             Export::Report { quick: false },
         ),
         ("Save figure…", "The view with its boxes and rays as lines (SVG).", state.picture.is_some(), Export::Figure),
-        ("Save picture…", "The traced picture alone (PNG).", state.picture.is_some(), Export::Picture),
+        (
+            "Save picture…",
+            "The traced picture alone, or compared ones as they stand (PNG).",
+            state.picture.is_some(),
+            Export::Picture,
+        ),
     ];
     for (text, help, possible, export) in items {
         if ui.add_enabled(possible, egui::Button::new(text)).on_hover_text(help).clicked() {

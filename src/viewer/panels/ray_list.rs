@@ -3,10 +3,11 @@
 use eframe::egui::{Align2, EventFilter, Id, Key, Rect, Response, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use super::long_list::LongList;
-use super::{Commands, empty, focus};
+use super::{Commands, empty, focus, saves};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::ray_list::Listed;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -27,6 +28,7 @@ pub fn show(ui: &mut Ui, state: &State, file: &Listed, commands: &mut Commands) 
             if list.tracing.is_some() { "Tracing them…" } else { "They are traced once nothing is measured or built." },
         );
     }
+    saves::show(ui, What::Rays, state, commands);
     header(ui);
     let id = Id::unique("rays of a file");
     let area = ui.available_rect_before_wrap();

@@ -1,10 +1,10 @@
 //! Time against the number of triangles: builds and rays, a curve for each structure.
 
-use eframe::egui::{Align, Button, Layout, ProgressBar, RichText, Ui, vec2};
+use eframe::egui::{Align, Button, Layout, ProgressBar, RichText, ScrollArea, Ui, vec2};
 use egui_plot::{Legend, Line, LineStyle, MarkerShape, PlotPoints, Points};
 
 use super::axes::log_log;
-use super::{Commands, empty};
+use super::{Commands, as_table, empty};
 use crate::accel::registry;
 use crate::lab::scaling::{Exponent, Point};
 use crate::viewer::command::Command;
@@ -32,7 +32,7 @@ pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
     });
 }
 
-/// Draws both plots.
+/// Draws both plots, or their table.
 pub fn show(ui: &mut Ui, state: &State) {
     let trade = &state.tradeoffs;
     if trade.scaling.is_empty() {
@@ -45,11 +45,28 @@ pub fn show(ui: &mut Ui, state: &State) {
         let text = RichText::new(format!("Not there: {missing}")).small().color(Palette::in_ui(ui).warn);
         ui.add(eframe::egui::Label::new(text).truncate()).on_hover_text(missing);
     }
+    if as_table::choice(ui, "time against triangles") {
+        return table(ui, state);
+    }
     let size = vec2((ui.available_width() - theme::GUTTER) * 0.5, ui.available_height() - theme::GRID);
     ui.horizontal_top(|ui| {
         ui.allocate_ui(size, |ui| plot(ui, state, ("builds", "seconds of a build"), |p| p.build_secs));
         ui.allocate_ui(size, |ui| plot(ui, state, ("rays", "ns a random line"), |p| p.ray_secs * 1e9));
     });
+}
+
+/// The same points as rows.
+fn table(ui: &mut Ui, state: &State) {
+    let heads = ["Structure", "Triangles", "Build", "Spread", "ns a random line", "Spread of that"];
+    let rows = state.tradeoffs.scaling.iter().flat_map(|row| {
+        let name = registry::find(&row.id).map_or(&row.id[..], |entry| entry.short);
+        row.points.iter().map(move |p| {
+            let [build, build_spread] = [p.build_secs, p.build_spread].map(format::duration);
+            let [ray, ray_spread] = [p.ray_secs, p.ray_spread].map(|secs| format::number(secs * 1e9));
+            [name.to_owned(), format::count(p.triangles), build, build_spread, ray, ray_spread]
+        })
+    });
+    ScrollArea::vertical().show(ui, |ui| as_table::show(ui, "time against triangles", heads, rows));
 }
 
 fn plot(ui: &mut Ui, state: &State, (id, y): (&str, &str), of: fn(&Point) -> f64) {

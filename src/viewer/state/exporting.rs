@@ -16,6 +16,8 @@ use crate::scene::{CameraSpec, LoadCx};
 use crate::task::{Cancel, Progress};
 use crate::viewer::exports::{Export, Form, Writing};
 use crate::viewer::figure::Figure;
+use crate::viewer::mosaic::Mosaic;
+use crate::viewer::sheets::{ListedRays, What};
 use crate::viewer::workers::Shared;
 use crate::viewer::{figure, files, plots, sheets};
 
@@ -76,6 +78,10 @@ impl State {
     fn export(&mut self, export: Export, path: PathBuf) {
         let started = match export {
             Export::Report { quick } => return self.make_report(quick, path),
+            Export::Table(What::Rays) => ListedRays::of(self).map(|rays| {
+                let budget = self.shared.budget.clone();
+                Box::new(move |cancel: &Cancel| rays.csv(&budget, cancel).map_err(|why| sentence(&why))) as Make
+            }),
             Export::Table(what) => {
                 sheets::sheet(self, what).map(|sheet| Box::new(move |_: &Cancel| Ok(sheet.csv().into_bytes())) as Make)
             }
@@ -89,6 +95,9 @@ impl State {
                 }) as Make
             }),
             Export::Figure => Figure::of(self).map(|figure| Box::new(move |cancel: &Cancel| figure.svg(cancel)) as Make),
+            Export::Picture if self.is_comparing() => {
+                Mosaic::of(self).map(|mosaic| Box::new(move |cancel: &Cancel| mosaic.png(cancel)) as Make)
+            }
             Export::Picture => self.on_screen().cloned().map(|picture| Box::new(move |_: &Cancel| figure::png(&picture)) as Make),
         };
         let Some(make) = started else {

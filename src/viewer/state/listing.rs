@@ -103,7 +103,7 @@ impl State {
             match job.poll() {
                 Outcome::Running => self.ray_list.tracing = Some((key, job)),
                 Outcome::Done(Ok(traced)) => {
-                    self.shared.give_back(self.ray_list.traced.replace(traced));
+                    self.shared.give_back(self.ray_list.traced.replace(Arc::new(traced)));
                     self.ray_list.chosen = None;
                 }
                 Outcome::Done(Err(_)) => {}
