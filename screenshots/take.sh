@@ -7,6 +7,7 @@
 # one is named (bathroom2 of Bitterli's rendering resources, https://benedikt-bitterli.me/resources/). Needs a display and a driver for
 # graphics (`xvfb-run -s '-screen 0 3840x2160x24' screenshots/take.sh` will do), and for the animation ImageMagick.
 set -euo pipefail
+[ $# -eq 0 ] || set -- "$(realpath "$1")"
 cd "$(dirname "$0")/.."
 cargo build --release --locked
 boxwood=${CARGO_TARGET_DIR:-target}/release/boxwood
@@ -24,6 +25,11 @@ take check builtin:teapot --spp 64 --check
 take errors builtin:cornell-box --errors image --spp 4 --no-overlay
 take structure builtin:teapot --structure bvh --select overlap --try-plane x,0.4 --depth 4 --spp 16
 take ray builtin:teapot --follow 0.1,0.1 --beside kdtree,grid --spp 16
+take panes builtin:teapot --mode nodes --panes bvh,kdtree,grid --arrange divider --no-overlay --spp 4
+take stadium builtin:teapot-in-stadium --mode prims --panes grid,grid2 --arrange two --no-overlay --spp 1
+take film 'builtin:teapot?triangles=1000' --film 0.3 --spp 16
+take section builtin:teapot --structure volumes --section x,0.5 --depth 4 --spp 16
+take tiles builtin:teapot --structure wide --no-overlay --time-tiles --spp 4
 if [ $# -gt 0 ]; then
     view='eye 2,17,25 target 0,11,-20 fov 55'
     take heat "$1" --structure bvh --mode nodes --no-overlay --spp 4 --camera "$view"
