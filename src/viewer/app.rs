@@ -79,6 +79,7 @@ impl App {
         let mut state = State::new(settings, shared, dialog, Graphics::of(cc.wgpu_render_state.as_ref()))?;
         state.first_camera = options.camera;
         state.first_section = options.section;
+        state.unfolded = options.unfold;
         state.tradeoffs.plot = options.errors.unwrap_or_default();
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| tour::LECTURE.to_owned())));
         if let Some(rays) = options.rays.clone() {

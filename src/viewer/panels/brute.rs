@@ -41,13 +41,13 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
                 commands.push(Command::CheckByBrute(None));
             }
         });
-        typed(ui, state.size_px, commands);
     });
     match &brute.found {
         _ if brute.marking => empty(ui, "Drag a rectangle in the view. Esc ends it."),
         Some(found) => result(ui, found, brute.next, commands),
         None => empty(ui, "Nothing compared in this view."),
     }
+    ui.add_enabled_ui(state.can_compare_with_brute_force(), |ui| typed(ui, state.size_px, commands));
 }
 
 /// A rectangle of a view of that size by its numbers, and the button that compares it.
