@@ -116,6 +116,9 @@ pub struct Args {
     /// The last of them shows what rays do more in the first than in it; with --mode nodes, leaves, prims or stack.
     #[arg(long, requires = "panes")]
     pub difference: bool,
+    /// In a window that folds the panel at the right, open it over the view.
+    #[arg(long)]
+    pub unfold: bool,
     /// Turn the camera and switch structures before that, and say how soon pictures followed.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
@@ -165,6 +168,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         panes: args.panes.into_iter().map(|one| one.0.id.to_owned()).collect(),
         arrange: args.arrange.and_then(|how| how.parse().ok()),
         difference: args.difference,
+        unfold: args.unfold,
         pace: args.pace,
         endure: args.endure,
         screenshot: args.screenshot,

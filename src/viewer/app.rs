@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rect, RichText, ScrollArea, Ui, ViewportCommand};
+use eframe::egui::{self, CentralPanel, Context, Frame, LayerId, Margin, Panel, Rect, RichText, ScrollArea, Ui, ViewportCommand};
 
 use super::animation::Animation;
 use super::command::Command;
@@ -37,8 +37,8 @@ pub struct App {
     pace: Pace,
     /// How long this thread has worked for the present frame, besides having it drawn.
     own_work: Duration,
-    /// Where the panels were last drawn, in the order of the keys.
-    panels: Vec<Rect>,
+    /// Where the panels were last drawn, and in which layer, in the order of the keys.
+    panels: Vec<(LayerId, Rect)>,
     /// Grows when the layout is reset: panels forget their sizes with their names.
     layout: u64,
 }
@@ -79,6 +79,7 @@ impl App {
         let mut state = State::new(settings, shared, dialog, Graphics::of(cc.wgpu_render_state.as_ref()))?;
         state.first_camera = options.camera;
         state.first_section = options.section;
+        state.unfolded = options.unfold;
         state.tradeoffs.plot = options.errors.unwrap_or_default();
         state.carry_out(Command::Open(options.model.clone().unwrap_or_else(|| tour::LECTURE.to_owned())));
         if let Some(rays) = options.rays.clone() {
@@ -157,8 +158,9 @@ impl App {
         egui::Id::unique((name, self.layout))
     }
 
-    /// Draws the panels at the left and at the right; returns where they are.
-    fn sides(&mut self, ui: &mut Ui) -> [Rect; 2] {
+    /// Draws the panels at the left and at the right; returns where they are, and in which layer.
+    fn sides(&mut self, ui: &mut Ui) -> [(LayerId, Rect); 2] {
+        self.state.folds = ui.available_width() < theme::FOLD_BELOW;
         let (state, commands) = (&self.state, &mut self.commands);
         let workspace = state.settings.workspace;
         let beside = move |ui: &mut Ui, commands: &mut Commands| {
@@ -178,13 +180,12 @@ impl App {
                 Workspace::Check => panels::check::show(ui, state, commands),
             }
         };
-        let narrow = ui.available_width() < theme::FOLD_BELOW;
         let id = |name: &str| egui::Id::unique((name, self.layout));
         let left = if workspace == Workspace::Structure {
             let tree = Panel::left(id("tree")).default_size(theme::TREE_PANEL).resizable(true);
             tree.show(ui, |ui| {
                 // The tree takes what the settings below it leave.
-                Panel::bottom(id("below the tree")).frame(Frame::NONE).show(ui, |ui| {
+                panels::lower::show(ui, id("below the tree"), |ui| {
                     panels::overlay::show(ui, state, commands);
                     panels::section::show(ui, state, commands);
                 });
@@ -203,32 +204,17 @@ impl App {
                 });
             })
         };
-        let right = if !narrow {
-            Panel::right(id("right")).default_size(theme::RIGHT_PANEL).resizable(true).show(ui, |ui| {
-                ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                    beside(ui, commands);
-                    panels::focus::keep_in_sight(ui);
-                });
-            })
-        } else {
-            let (sign, name) = match workspace {
-                Workspace::View => ("Σ", "Statistics"),
-                Workspace::Structure => ("#", "Selected cell"),
-                Workspace::Ray => ("»", "Ray"),
-                Workspace::Compare => ("±", "Errors"),
-                Workspace::Check => ("?", "Findings"),
-            };
-            Panel::right(id("strip")).exact_size(theme::STRIP).resizable(false).show(ui, |ui| {
-                ui.menu_button(sign, |ui| {
-                    ui.set_width(theme::RIGHT_PANEL);
-                    beside(ui, commands);
-                })
-                .response
-                .accessible_name(name)
-                .on_hover_text(name);
-            })
-        };
-        [left.response.rect, right.response.rect]
+        let left = (ui.layer_id(), left.response.rect);
+        if state.folds {
+            return [left, panels::drawer::show(ui, Panel::right(id("strip")), state, commands, beside)];
+        }
+        let right = Panel::right(id("right")).default_size(theme::RIGHT_PANEL).resizable(true).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                beside(ui, commands);
+                panels::focus::keep_in_sight(ui);
+            });
+        });
+        [left, (ui.layer_id(), right.response.rect)]
     }
 
     /// Draws the view, and what stands below it; returns where they are.
@@ -355,8 +341,9 @@ impl eframe::App for App {
         let sides = (!self.state.presenting).then(|| self.sides(ui));
         let (left, right) = (sides.map(|sides| sides[0]), sides.map(|sides| sides[1]));
         let centre = self.centre(ui);
-        let inner = left.into_iter().chain(centre).chain(right);
-        self.panels = std::iter::once(menu.response.rect).chain(inner).chain([status.response.rect]).collect();
+        let here = |rect| (ui.layer_id(), rect);
+        let inner = left.into_iter().chain(centre.into_iter().map(here)).chain(right);
+        self.panels = std::iter::once(here(menu.response.rect)).chain(inner).chain([here(status.response.rect)]).collect();
         panels::terms::show(ui, &self.state, &mut self.commands);
         panels::help::show(ui, &self.state, &mut self.commands);
         panels::path::show(ui, &self.state, &mut self.commands);

@@ -252,6 +252,8 @@ pub enum Command {
     Bookmark(usize),
     /// Forget it.
     DropBookmark(usize),
+    /// Open the panel at the right, which a narrow window folds, or close it.
+    Unfold(bool),
     /// Panels back to their first sizes.
     ResetLayout,
     /// Bring the focus to the next panel, or to the one before.

@@ -76,6 +76,8 @@ pub struct ViewerOptions {
     pub arrange: Option<Arrange>,
     /// The last of them shows its difference from the first.
     pub difference: bool,
+    /// In a window that folds the panel at the right, open it over the view.
+    pub unfold: bool,
     /// Turn the camera and switch structures before that, to see how soon pictures follow.
     pub pace: bool,
     /// Switch structures a thousand times and open fifty models before that, to see what becomes of the memory.

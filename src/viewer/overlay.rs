@@ -278,7 +278,7 @@ impl Collector<'_> {
             && match cell.kind {
                 CellKind::Void | CellKind::Leaf { prims: 0 } if !s.empty_cells => false,
                 _ if let Some(whole) = whole => whole,
-                _ if self.resolution.is_some() => leaf && self.in_slice(cell),
+                _ if self.resolution.is_some() => leaf && cell.prims() >= s.occupancy && self.in_slice(cell),
                 _ => self.wants_of_level(cell, depth),
             }
     }

@@ -75,6 +75,11 @@ impl RayList {
         self.reading.is_some() || self.tracing.is_some() || self.awaited.is_some()
     }
 
+    /// Whether it is known what they do in that structure.
+    pub fn is_traced_in(&self, structure: Option<&Key>) -> bool {
+        self.traced.as_ref().is_some_and(|traced| Some(&traced.of) == structure)
+    }
+
     /// How far it is.
     pub fn progress(&self) -> Option<&Progress> {
         let reading = self.reading.as_ref().map(|job| &job.progress);

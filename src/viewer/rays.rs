@@ -12,6 +12,8 @@ use crate::lab::follow::Followed;
 
 /// Columns of steps beside each other, at most.
 pub const MOST: usize = 4;
+/// Steps a second.
+pub const SPEEDS: std::ops::RangeInclusive<f32> = 0.5..=120.0;
 /// The kinds of rays that can be followed from a pixel.
 pub const KINDS: [RayKind; 3] = [RayKind::Primary, RayKind::Shadow, RayKind::Diffuse];
 
@@ -83,6 +85,11 @@ impl Rays {
             true => column.followed.steps.len().saturating_sub(1),
             false => column.followed.until(lead.followed.reached(self.at)),
         })
+    }
+
+    /// Whether there is no room for one more column beside those of the shown structure and others.
+    pub fn is_full(&self, shown: &str) -> bool {
+        self.beside.iter().filter(|id| **id != shown).count() + 1 >= MOST
     }
 
     /// The last step of the leading column.

@@ -111,6 +111,8 @@ pub struct OverlaySettings {
     pub slice: u32,
     /// 0, 1 or 2 for x, y or z.
     pub slice_axis: usize,
+    /// Of a grid: only cells that hold at least so many triangles.
+    pub occupancy: u32,
     /// Lines behind the surface.
     pub hidden_lines: bool,
     /// Only the selected cell and what is below it.
@@ -225,6 +227,7 @@ impl Default for OverlaySettings {
             from_depth: 3,
             slice: 0,
             slice_axis: 2,
+            occupancy: 0,
             hidden_lines: true,
             subtree_only: false,
             levels: Levels::default(),

@@ -1,5 +1,6 @@
 //! No text is cut off, hidden or written over, in windows small and large.
 
+use boxwood::lab::RayKind;
 use boxwood::viewer::theme;
 use eframe::egui::{self, Modifiers, PointerButton, Rect, Vec2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -280,4 +281,47 @@ fn a_narrow_window_folds_the_statistics() {
     w.button("Statistics");
     w.step();
     assert!(w.says("SAH cost"));
+}
+
+#[test]
+fn the_folded_panel_is_worked_in_and_stays_open() {
+    let mut w = open(&case("narrow", 1000.0, 1100.0, 1.0, 1.0), |_| {});
+    w.button("Statistics");
+    w.step();
+    w.click(egui::Role::DisclosureTriangle, "Prediction");
+    w.harness.run_steps(2);
+    assert!(w.state().unfolded && w.says("SAH cost"));
+    // Another workspace has another panel there; a list in it opens over it.
+    w.key(Modifiers::NONE, egui::Key::F3);
+    w.choose("The pixel's ray", "Shadow ray from there");
+    assert_eq!(w.state().rays.kind, RayKind::Shadow);
+    w.click(egui::Role::TextInput, "Ray as text");
+    w.harness.event(egui::Event::Text("0 0 5  0 0 -1".to_owned()));
+    w.step();
+    w.key(Modifiers::NONE, egui::Key::Enter);
+    w.until("the ray", |s| !s.rays.columns.is_empty());
+    w.step();
+    assert!(w.state().unfolded && w.has(egui::Role::TextInput, "Ray as text"));
+    // It is as high as the window leaves room for, and closed by its button or Esc.
+    w.button("Ray");
+    w.step();
+    assert!(!w.state().unfolded && !w.has(egui::Role::TextInput, "Ray as text"));
+    w.button("Ray");
+    w.key(Modifiers::NONE, egui::Key::Escape);
+    w.step();
+    assert!(!w.state().unfolded);
+}
+
+#[test]
+fn the_tree_keeps_half_of_the_height() {
+    for case in &CASES {
+        let mut w = open(case, |s| s.options.model = Some("builtin:teapot?triangles=1000".into()));
+        w.key(Modifiers::NONE, egui::Key::F2);
+        w.until("the tree", |s| s.tree.outline.is_some());
+        w.harness.run_steps(3);
+        let tree = w.harness.get_by_role_and_label(egui::Role::Tree, "Cells").rect();
+        // Its heading and its buttons are above.
+        let room = w.harness.ctx.content_rect().height() - theme::TOP_BAR - theme::ROW;
+        assert!(tree.height() >= 0.5 * room - 8.0 * theme::ROW, "{}: {tree} of {room}", case.name);
+    }
 }

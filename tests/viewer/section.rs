@@ -160,6 +160,11 @@ fn the_whole_view_is_checked_without_a_mouse() {
     let found = w.state().brute.found.clone().expect("there");
     assert_eq!(found.all, u64::from(width) * u64::from(height));
     assert!(found.pixels > 0 && found.unlike == found.rounded, "{found:?}");
+    // A part of it by its numbers: at first the middle.
+    w.button("Check these pixels");
+    w.until("fewer pixels", |s| s.brute.found.as_ref().is_some_and(|part| part.all < found.all));
+    let part = w.state().brute.found.clone().expect("there");
+    assert_eq!(part.all, u64::from(width / 2) * u64::from(height / 2));
     // Against itself there is nothing to compare.
     w.button("Brute force");
     w.settle();

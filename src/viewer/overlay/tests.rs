@@ -65,6 +65,23 @@ fn a_few_cells_of_a_grid_are_from_everywhere() {
 }
 
 #[test]
+fn emptier_cells_of_a_grid_are_left_out() {
+    let accel = built("builtin:soup?triangles=20000", "grid", None);
+    let mut sizes = Vec::new();
+    walk(accel.as_ref(), &mut |cell| {
+        sizes.extend(cell.is_leaf().then_some(cell.prims()));
+        ControlFlow::Continue(Descend::Yes)
+    });
+    let most = sizes.iter().copied().max().expect("cells");
+    assert!(most > 2);
+    for occupancy in [0, 1, 2, most, most + 1] {
+        let settings = OverlaySettings { planes: false, empty_cells: true, occupancy, ..OverlaySettings::default() };
+        let total = collected(accel.as_ref(), settings, PERSPECTIVE, 1).total;
+        assert_eq!(total, sizes.iter().filter(|prims| **prims >= occupancy).count(), "{occupancy}");
+    }
+}
+
+#[test]
 fn the_larger_go_first() {
     let root =
         Cell { id: CellId { instance: 0, node: 0 }, depth: 0, shape: Shape::Box(Aabb::EMPTY), split: None, kind: CellKind::Void };

@@ -1,9 +1,9 @@
 //! A part of the picture compared with brute force: which, how far that is, and what it found.
 
-use eframe::egui::{Button, Label, ProgressBar, RichText, Ui};
+use eframe::egui::{Button, DragValue, Label, ProgressBar, RichText, Ui};
 
 use super::{Commands, empty, heading};
-use crate::lab::BruteCheck;
+use crate::lab::{BruteCheck, PixelRect};
 use crate::viewer::brute::SECS;
 use crate::viewer::command::Command;
 use crate::viewer::format;
@@ -47,6 +47,31 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         Some(found) => result(ui, found, brute.next, commands),
         None => empty(ui, "Nothing compared in this view."),
     }
+    ui.add_enabled_ui(state.can_compare_with_brute_force(), |ui| typed(ui, state.size_px, commands));
+}
+
+/// A rectangle of a view of that size by its numbers, and the button that compares it.
+fn typed(ui: &mut Ui, [width, height]: [u32; 2], commands: &mut Commands) {
+    let id = ui.scope_id().with("typed rectangle");
+    let middle = [width / 4, height / 4, width / 2, height / 2];
+    let [mut x, mut y, mut across, mut down]: [u32; 4] = ui.data(|d| d.get_temp(id)).unwrap_or(middle);
+    ui.horizontal_wrapped(|ui| {
+        let mut field = |value: &mut u32, (least, most): (u32, u32), prefix: &str, name: &str, help: &str| {
+            // What was typed for a larger view ends with this one.
+            *value = (*value).min(most).max(least);
+            let field = ui.add(DragValue::new(value).range(least..=most.max(least)).prefix(prefix));
+            field.accessible_name(name).on_hover_text(help);
+        };
+        field(&mut x, (0, width.saturating_sub(1)), "x ", "Left of the rectangle", "Its first column of pixels, from 0.");
+        field(&mut y, (0, height.saturating_sub(1)), "y ", "Top of the rectangle", "Its first row of pixels, from 0 at the top.");
+        let (columns, rows) = (width.saturating_sub(x), height.saturating_sub(y));
+        field(&mut across, (1, columns), "w ", "Width of the rectangle", "Columns of pixels.");
+        field(&mut down, (1, rows), "h ", "Height of the rectangle", "Rows of pixels.");
+        if ui.button("Check these pixels").on_hover_text(HELP).clicked() {
+            commands.push(Command::CheckByBrute(Some(PixelRect { at: [x, y], size: [across, down] })));
+        }
+    });
+    ui.data_mut(|d| d.insert_temp(id, [x, y, across, down]));
 }
 
 /// How far it is, and how long all would take.

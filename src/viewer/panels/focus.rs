@@ -1,7 +1,7 @@
 //! Where keys go: it is seen, and it is moved from panel to panel.
 
 use eframe::egui::accesskit::{Action, ActionRequest, TreeId};
-use eframe::egui::{self, Context, Event, EventFilter, Id, Key, LayerId, Order, Rect, Sense, StrokeKind, Ui};
+use eframe::egui::{self, Context, Event, EventFilter, Id, Key, LayerId, Order, Rect, Response, Sense, StrokeKind, Ui};
 
 use crate::viewer::theme::{self, Palette};
 
@@ -57,9 +57,11 @@ pub fn keep_in_sight(ui: &Ui) {
 }
 
 /// Brings the focus to the first thing of the next panel that takes keys, or of the one before.
-pub fn go(ctx: &Context, panels: &[Rect], forward: bool) {
-    let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id)).map(|widget| widget.rect.center());
-    let now = focused.and_then(|at| panels.iter().position(|panel| panel.contains(at)));
+pub fn go(ctx: &Context, panels: &[(LayerId, Rect)], forward: bool) {
+    let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
+    let holds =
+        |(layer, panel): &(LayerId, Rect), widget: &Response| *layer == widget.layer_id && panel.contains(widget.rect.center());
+    let now = focused.and_then(|widget| panels.iter().position(|panel| holds(panel, &widget)));
     let first = around(now, panels.len(), forward).find_map(|panel| first_in(ctx, panels[panel]));
     if let Some(first) = first {
         ctx.memory_mut(|m| m.request_focus(first));
@@ -77,10 +79,10 @@ fn around(now: Option<usize>, n: usize, forward: bool) -> impl Iterator<Item = u
 }
 
 /// The first thing in a panel that takes keys, as it was last drawn.
-fn first_in(ctx: &Context, panel: Rect) -> Option<Id> {
+fn first_in(ctx: &Context, (layer, panel): (LayerId, Rect)) -> Option<Id> {
     let grab = grab(ctx);
     ctx.viewport(|viewport| {
-        let mut widgets = viewport.prev_pass.widgets.get_layer(LayerId::background());
+        let mut widgets = viewport.prev_pass.widgets.get_layer(layer);
         let takes_keys = |widget: &&egui::WidgetRect| {
             let seen = widget.interact_rect.is_positive() && panel.contains(widget.interact_rect.center());
             seen && widget.enabled && widget.sense.is_focusable() && !is_divider(widget.rect, widget.sense, grab)

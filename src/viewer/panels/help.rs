@@ -38,7 +38,7 @@ pub fn show(ui: &Ui, state: &State, commands: &mut Commands) {
 }
 
 /// What the mouse does, and keys that do other things in other places.
-const fn hands(navigation: Navigation) -> [(&'static str, &'static str); 11] {
+const fn hands(navigation: Navigation) -> [(&'static str, &'static str); 16] {
     let (orbit, pan) = match navigation {
         Navigation::Standard => ("Left drag", "Middle drag, or Shift and left drag"),
         Navigation::Blender => ("Middle drag", "Shift and middle drag"),
@@ -53,6 +53,11 @@ const fn hands(navigation: Navigation) -> [(&'static str, &'static str); 11] {
         ("Arrows in the tree", "Up and down; in and out"),
         ("Arrows in the SAH plot", "Move the plane that is tried; change its axis"),
         ("Arrows in the steps", "Step by step; left and right by leaves"),
+        ("Arrows in the list of rays", "Follow the next ray, or the one before"),
+        ("Drag a histogram's end, or arrows", "Move that end of the colours"),
+        ("Drag a divider, or arrows", "Move it between compared pictures"),
+        ("Drag a panel's edge, or arrows", "Make the panel larger or smaller"),
+        ("Drag, after Mark a rectangle", "Check the pixels with brute force"),
         ("Tab", "The next control"),
         ("Esc", "Cancel what is going on"),
     ]

@@ -72,41 +72,22 @@ pub fn keys(ctx: &egui::Context, state: &State, commands: &mut Commands) {
 
 /// Esc ends the innermost of what is going on.
 fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
-    let building = state.pane_in_building().map(|(which, _)| which);
-    let innermost = [
+    let pages = [
         (state.palette, Command::Palette(false)),
         (state.help, Command::Help(false)),
         (state.terms, Command::Terms(false)),
         (state.asking.is_some(), Command::AskForPath(false)),
-        (state.measuring.is_some(), Command::CancelMeasure),
-        (state.building.is_some(), Command::CancelBuild),
-        (state.loading.is_some(), Command::CancelLoad),
-        (state.error.is_some(), Command::Dismiss),
-        (state.needing.is_some(), Command::CancelNeeds),
-        (state.causes.running.is_some(), Command::CancelCauses),
-        (state.tiles.running.is_some(), Command::CancelTiles),
-        (state.rays.following.is_some(), Command::CancelFollow),
-        (state.brute.marking, Command::MarkRectangle(false)),
-        (state.brute.running.is_some(), Command::CancelBrute),
-        (state.hiding.is_some(), Command::CancelHide),
-        (state.filming.making.is_some(), Command::CloseFilm),
-        (state.fits.running.is_some(), Command::CancelFitVolumes),
-        (state.ray_list.reading.is_some() || state.ray_list.tracing.is_some(), Command::CancelRays),
-        (state.panes.tuned.is_some(), Command::TunePane(None)),
-        (building.is_some(), Command::ClosePane(building.unwrap_or_default())),
-        (state.checks.checking.is_some(), Command::CancelCheck),
-        (state.errors.making.is_some(), Command::CancelReference),
-        (state.tradeoffs.running.is_some(), Command::CancelTradeoffs),
-        (state.tradeoffs.growing.is_some(), Command::CancelScaling),
-        (state.exports.report.is_some(), Command::CancelReport),
-        (state.tour.is_some(), Command::Tour(None)),
+    ];
+    let running = actions::running(state).into_iter().map(|(on, _, command)| (on, command));
+    let outermost = [
+        (state.folds && state.unfolded && !state.presenting, Command::Unfold(false)),
         (state.presenting, Command::Present(false)),
         // In another workspace nobody sees that it runs.
         (state.checks.running.is_some() && state.settings.workspace == Workspace::Check, Command::CancelLab),
     ];
     // An open menu or list is further in than all of these, and closes itself.
     if !egui::Popup::is_any_open(ctx)
-        && let Some((_, command)) = innermost.into_iter().find(|(on, _)| *on)
+        && let Some((_, command)) = pages.into_iter().chain(running).chain(outermost).find(|(on, _)| *on)
         && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape))
     {
         commands.push(command);
@@ -260,12 +241,17 @@ fn memory(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if ui.radio(chosen.is_none(), "Half of the machine").clicked() {
         commands.push(Command::Memory(None));
     }
-    let gibs = [1, 2, 4, 8, 16, 32, 64, 128].into_iter().filter(|gib| gib << 30 <= state.machine_bytes);
-    for gib in gibs {
+    for gib in memory_sizes(state) {
         if ui.radio(chosen == Some(gib << 10), format::bytes(gib << 30)).clicked() {
             commands.push(Command::Memory(Some(gib << 10)));
         }
     }
+}
+
+/// Sizes of the budget that this machine has, in GiB.
+pub fn memory_sizes(state: &State) -> impl Iterator<Item = u64> {
+    let most = state.machine_bytes;
+    [1, 2, 4, 8, 16, 32, 64, 128].into_iter().filter(move |gib| gib << 30 <= most)
 }
 
 fn window(ui: &mut Ui, state: &State, commands: &mut Commands) {

@@ -7,6 +7,7 @@ use crate::accel::cell::{Cell, CellKind, Split};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::state::State;
+use glam::Vec3;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -68,8 +69,14 @@ fn figures(ui: &mut Ui, state: &State, cell: &Cell) {
             fact(ui, "Overlap", format::share(overlap), help);
         }
     }
-    let size = cell.shape.bounds().size().to_array().map(|x| format::number(x.into()));
-    fact(ui, "Size", size.join(" × "), "The sides of its box, in units in which the longest side of the scene is about 1.");
+    let bounds = cell.shape.bounds();
+    let triple = |v: Vec3, between: &str| v.to_array().map(|x| format::number(x.into())).join(between);
+    let units = "in units in which the longest side of the scene is about 1.";
+    fact(ui, "Size", triple(bounds.size(), " × "), &format!("The sides of its box, {units}"));
+    fact(ui, "From", triple(bounds.min, ", "), &format!("The least corner of its box: x, y and z, {units}"));
+    fact(ui, "To", triple(bounds.max, ", "), &format!("The greatest corner of its box: x, y and z, {units}"));
+    let help = "The surface area of its box, in squares of those units; that over the root's is the chance to be met.";
+    fact(ui, "Area", format::number(bounds.area()), help);
     if let Some(Split::Axis { axis, pos }) = cell.split.filter(|_| !hidden(state)) {
         fact(ui, "Divided", format!("{} = {}", axis.name(), format::number(pos.into())), "The plane that divides it.");
     }

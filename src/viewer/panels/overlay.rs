@@ -5,7 +5,7 @@ use eframe::egui::{Checkbox, ComboBox, Slider, Ui};
 use super::{Commands, heading};
 use crate::accel::cell::Layout;
 use crate::viewer::command::Command;
-use crate::viewer::settings::{BoxColor, Levels};
+use crate::viewer::settings::{BoxColor, Levels, OverlaySettings};
 use crate::viewer::state::State;
 
 /// Draws the panel.
@@ -31,20 +31,17 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             ui.checkbox(&mut s.boxes, boxes).on_hover_text("The box, or the volume, of each node at the chosen depth.");
             let leaves_only = Checkbox::new(&mut s.leaves_only, "Leaves only");
             ui.add_enabled(chosen, leaves_only).on_hover_text("The boxes that hold triangles, at any depth.");
-            if layout == Layout::Partition && has_split_planes(state) {
+            if has_split_planes(state) {
                 ui.checkbox(&mut s.planes, "Split planes").on_hover_text("The planes that divide the cells at the chosen depth.");
             }
-            if !layout.nests() {
+            if has_empty_cells(state) {
                 ui.checkbox(&mut s.empty_cells, "Empty cells too").on_hover_text("Leaves without triangles.");
             }
             let deepest = super::toolbar::deepest(state);
             let mut range = s.from_depth < s.depth;
             let depths = ui.add_enabled(chosen, Checkbox::new(&mut range, "Range of depths"));
             if depths.on_hover_text("Every level from the first to the chosen one.").changed() {
-                s.from_depth = if range { s.depth.saturating_sub(1) } else { s.depth };
-                if range && s.depth == 0 {
-                    (s.from_depth, s.depth) = (0, deepest.min(1));
-                }
+                s = ranged(s, range, deepest);
             }
             if range {
                 ui.add_enabled(chosen, Slider::new(&mut s.from_depth, 0..=s.depth).text("from"));
@@ -86,8 +83,23 @@ pub fn has_levels(state: &State) -> bool {
     state.shown.as_ref().is_some_and(|b| b.accel.levels().is_some())
 }
 
+/// A range of depths that ends at the one that is drawn, or that one alone.
+pub fn ranged(now: OverlaySettings, range: bool, deepest: u32) -> OverlaySettings {
+    match (range, now.depth) {
+        (false, depth) => OverlaySettings { from_depth: depth, ..now },
+        (true, 0) => OverlaySettings { from_depth: 0, depth: deepest.min(1), ..now },
+        (true, depth) => OverlaySettings { from_depth: depth - 1, ..now },
+    }
+}
+
 /// Whether cells are divided by one plane each, which can be drawn: an octree's are not. A tree that
 /// is one leaf does not say how it would divide.
-fn has_split_planes(state: &State) -> bool {
-    state.shown.as_ref().map(|b| b.accel.root()).is_some_and(|root| root.is_leaf() || root.split.is_some())
+pub fn has_split_planes(state: &State) -> bool {
+    let root = state.shown.as_ref().filter(|b| b.accel.layout() == Layout::Partition).map(|b| b.accel.root());
+    root.is_some_and(|root| root.is_leaf() || root.split.is_some())
+}
+
+/// Whether there may be cells without triangles: where cells divide space.
+pub fn has_empty_cells(state: &State) -> bool {
+    state.layout().is_some_and(|layout| !layout.nests())
 }

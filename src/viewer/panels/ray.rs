@@ -9,7 +9,7 @@ use crate::lab::RayKind;
 use crate::lab::follow::{Followed, from_text, to_text};
 use crate::viewer::command::Command;
 use crate::viewer::format;
-use crate::viewer::rays::{KINDS, MOST};
+use crate::viewer::rays::{KINDS, SPEEDS};
 use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
@@ -30,7 +30,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     beside(ui, state, commands);
 }
 
-const fn name_of(kind: RayKind) -> &'static str {
+/// The name of a kind in menus.
+pub const fn name_of(kind: RayKind) -> &'static str {
     match kind {
         RayKind::Shadow => "Shadow ray from there",
         RayKind::Diffuse | RayKind::Shuffled => "Bounce from there",
@@ -134,7 +135,7 @@ fn player(ui: &mut Ui, state: &State, commands: &mut Commands) {
         commands.push(go(step - 1));
     }
     let mut speed = rays.speed;
-    let field = DragValue::new(&mut speed).range(0.5..=120.0).speed(0.1).fixed_decimals(1).suffix(" steps/s");
+    let field = DragValue::new(&mut speed).range(SPEEDS).speed(0.1).fixed_decimals(1).suffix(" steps/s");
     if ui.add(field).accessible_name("Speed").on_hover_text("How fast it plays.").changed() {
         commands.push(Command::PlaySpeed(speed));
     }
@@ -178,7 +179,7 @@ fn work(ui: &mut Ui, state: &State) {
 /// Which structures trace the ray beside the shown one.
 fn beside(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let (rays, shown) = (&state.rays, state.settings.entry().id);
-    let full = rays.beside.iter().filter(|id| **id != shown).count() + 1 >= MOST;
+    let full = rays.is_full(shown);
     ui.horizontal_wrapped(|ui| {
         for entry in registry::ALL.iter().filter(|entry| entry.id != shown) {
             let chosen = rays.beside.contains(&entry.id);

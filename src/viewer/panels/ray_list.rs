@@ -21,12 +21,9 @@ pub fn show(ui: &mut Ui, state: &State, file: &Listed, commands: &mut Commands) 
     let list = &state.ray_list;
     let more = if file.more { " and more" } else { "" };
     empty(ui, &format!("{}: {} rays{more}", file.name, format::count(file.rays.len() as u64)));
-    let shown = state.shown.as_ref().map(|shown| &shown.key);
-    if list.traced.as_ref().is_none_or(|traced| Some(&traced.of) != shown) {
-        return empty(
-            ui,
-            if list.tracing.is_some() { "Tracing them…" } else { "They are traced once nothing is measured or built." },
-        );
+    if !list.is_traced_in(state.shown.as_ref().map(|shown| &shown.key)) {
+        let text = if list.tracing.is_some() { "Tracing them…" } else { "They are traced once nothing is measured or built." };
+        return empty(ui, text);
     }
     saves::show(ui, What::Rays, state, commands);
     header(ui);

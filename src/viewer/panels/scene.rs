@@ -60,15 +60,18 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     warnings(ui, &all);
 }
 
+/// Whether instances are triangles of their own; `None` where no mesh stands in several places.
+pub fn flattened(state: &State) -> Option<bool> {
+    let model = state.model.as_ref()?;
+    let repeats = model.needs.iter().any(|finding| finding.feature == Feature::Instancing && finding.used);
+    repeats.then(|| model.geometry.placed().is_none())
+}
+
 /// Whether meshes that stand in several places are kept once: only where there are some.
 fn instances(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    let Some(model) = &state.model else { return };
-    let repeats = model.needs.iter().any(|finding| finding.feature == Feature::Instancing && finding.used);
-    let mut flat = model.geometry.placed().is_none();
+    let Some(mut flat) = flattened(state) else { return };
     let help = "Make every instance triangles of its own, in one structure, instead of one structure for each mesh and a level above. The model is opened anew.";
-    if repeats
-        && ui.add_enabled(state.loading.is_none(), Checkbox::new(&mut flat, "Flatten instances")).on_hover_text(help).clicked()
-    {
+    if ui.add_enabled(state.loading.is_none(), Checkbox::new(&mut flat, "Flatten instances")).on_hover_text(help).clicked() {
         commands.push(Command::Instances(if flat { Instances::Flattened } else { Instances::Kept }));
     }
 }

@@ -91,15 +91,18 @@ fn heat_rays(ui: &mut Ui, state: &State, commands: &mut Commands) {
     combo.response.accessible_name("Rays of the heat map").on_hover_text(chosen.help());
 }
 
+/// Exposures, in stops.
+pub const STOPS: std::ops::RangeInclusive<f32> = -16.0..=16.0;
+
 /// How light becomes colour, and the numbers that paths are made of.
 fn light(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let mut tone = state.settings.tone;
-    let stops = DragValue::new(&mut tone.exposure).range(-16.0..=16.0).speed(0.05).fixed_decimals(1).suffix(" EV");
+    let stops = DragValue::new(&mut tone.exposure).range(STOPS).speed(0.05).fixed_decimals(1).suffix(" EV");
     ui.add(stops).on_hover_text("Exposure in stops: each doubles the light. Drag, or click to type.");
     let fitting = state.picture.as_ref().and_then(|picture| picture.progress.exposure);
     let auto = ui.add_enabled(fitting.is_some(), Button::new("Auto"));
     if auto.on_hover_text("Expose what is seen to a middle grey.").clicked() {
-        tone.exposure = fitting.map_or(tone.exposure, |stops| (stops * 10.0).round() / 10.0).clamp(-16.0, 16.0);
+        tone.exposure = fitting.map_or(tone.exposure, |stops| (stops * 10.0).round() / 10.0).clamp(*STOPS.start(), *STOPS.end());
     }
     let combo = ComboBox::from_id_salt("tone").width(16.0 * theme::GRID).selected_text(tone.curve.label());
     let combo = combo.show_ui(ui, |ui| {
@@ -207,10 +210,22 @@ fn slice(ui: &mut Ui, state: &State, resolution: [u32; 3], commands: &mut Comman
         }
     });
     list.response.accessible_name("Axis").on_hover_text("The axis that layers are counted along.");
+    let occupancy = DragValue::new(&mut overlay.occupancy).speed(0.1).prefix("Occupancy ");
+    let help = "Draw only cells that hold at least so many triangles. Drag, or click to type.";
+    ui.add(occupancy).accessible_name("Occupancy").on_hover_text(help);
     if overlay != before {
         commands.push(Command::Overlay(overlay));
     }
 }
+
+/// The structure whose nodes have eight children.
+const WIDE: &str = "wide";
+/// What the slider is called, and its help.
+const DEPTH: (&str, &str) = ("Depth", "The level of the tree that is drawn: 0 is the root.");
+const WIDE_DEPTH: (&str, &str) = (
+    "Depth, 8-wide",
+    "The level of the tree that is drawn: 0 is the root. A node has up to eight children, so that a level is about three of a binary tree.",
+);
 
 fn depth(ui: &mut Ui, state: &State, commands: &mut Commands) {
     match state.layout() {
@@ -221,10 +236,10 @@ fn depth(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let mut overlay = state.settings.overlay;
     let deepest = deepest(state);
     let single = overlay.from_depth == overlay.depth;
-    let slider = Slider::new(&mut overlay.depth, 0..=deepest).text("Depth");
-    let slider = ui
-        .add_enabled(!overlay.leaves_only && state.film_on_screen().is_none(), slider)
-        .on_hover_text("The level of the tree that is drawn: 0 is the root.");
+    let wide = state.shown.as_ref().is_some_and(|shown| shown.key.entry.id == WIDE);
+    let (name, help) = if wide { WIDE_DEPTH } else { DEPTH };
+    let slider = Slider::new(&mut overlay.depth, 0..=deepest).text(name);
+    let slider = ui.add_enabled(!overlay.leaves_only && state.film_on_screen().is_none(), slider).on_hover_text(help);
     if slider.changed() {
         overlay.from_depth = if single { overlay.depth } else { overlay.from_depth.min(overlay.depth) };
         commands.push(Command::Overlay(overlay));

@@ -1,13 +1,14 @@
 //! The tree of cells: each with its triangles and its part of the SAH cost, opened and closed, walked by keys.
 
 use eframe::egui::{
-    Align2, Button, EventFilter, Id, Key, Label, Pos2, Rect, Response, RichText, Role, Sense, Shape, Stroke, TextStyle, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, Button, EventFilter, Id, Key, KeyboardShortcut, Label, Pos2, Rect, Response, RichText, Role, Sense, Shape, Stroke,
+    TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::long_list::LongList;
 use super::{Commands, empty, focus, heading};
 use crate::accel::outline::{Outline, Rank, Row};
+use crate::viewer::actions::{self, SIBLING};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::state::State;
@@ -234,19 +235,39 @@ fn keys(ui: &Ui, focus: &Response, state: &State, outline: &Outline, fit: u32, c
     commands.extend(command);
 }
 
-/// The way to the cells around the selected one.
+/// A way from the selected cell to another.
+pub struct Way {
+    name: &'static str,
+    help: &'static str,
+    key: Option<KeyboardShortcut>,
+    /// The row that it leads to, if there is one.
+    pub to: Option<u32>,
+}
+
+/// The ways to the parent, the child and the sibling of the selected row.
+pub fn ways(state: &State) -> [Way; 3] {
+    let selected = state.tree.outline.as_ref().zip(state.tree.selected);
+    let parent = selected.and_then(|(outline, at)| outline.parent(at));
+    let child = selected.and_then(|(outline, at)| (!outline.row(at).is_leaf()).then_some(at + 1));
+    let sibling = selected.and_then(|(outline, at)| outline.sibling(at));
+    let way = |name, help, key, to| Way { name, help, key, to };
+    [
+        way("Parent", "Select the cell around this one. Left in the tree.", None, parent),
+        way("Child", "Select the first cell in this one. Right in the tree.", None, child),
+        way("Sibling", "Select the next cell in the same one.", Some(SIBLING), sibling),
+    ]
+}
+
+/// The buttons for them.
 pub fn steps(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    let (Some(outline), Some(at)) = (&state.tree.outline, state.tree.selected) else { return };
-    let child = (!outline.row(at).is_leaf()).then_some(at + 1);
-    let ways = [
-        ("Parent", "Select the cell around this one.", outline.parent(at)),
-        ("Child", "Select the first cell in this one.", child),
-        ("Sibling", "Select the next cell in the same one.", outline.sibling(at)),
-    ];
+    if state.tree.outline.is_none() || state.tree.selected.is_none() {
+        return;
+    }
     ui.horizontal(|ui| {
-        for (name, help, row) in ways {
-            if ui.add_enabled(row.is_some(), Button::new(name)).on_hover_text(help).clicked() {
-                commands.extend(row.map(Command::SelectRow));
+        for Way { name, help, key, to } in ways(state) {
+            let key = key.map(|key| format!(" ({})", actions::written(ui.ctx(), &key))).unwrap_or_default();
+            if ui.add_enabled(to.is_some(), Button::new(name)).on_hover_text(format!("{help}{key}")).clicked() {
+                commands.extend(to.map(Command::SelectRow));
             }
         }
         if ui.button("Frame").on_hover_text("Bring this cell into view.").clicked() {

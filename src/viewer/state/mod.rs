@@ -169,6 +169,10 @@ pub struct State {
     pub tour: Option<Tour>,
     /// Everything is larger and the panels are away, for an audience.
     pub presenting: bool,
+    /// The window is too narrow for the panel at the right: it is folded to a strip.
+    pub folds: bool,
+    /// That panel is open all the same, over the view.
+    pub unfolded: bool,
     /// The workspace file that is saved or opened.
     saving: Saving,
     /// A cell to select once its structure is there.
@@ -325,6 +329,8 @@ impl State {
             terms: false,
             tour: None,
             presenting: false,
+            folds: false,
+            unfolded: false,
             saving: Saving::default(),
             awaited: None,
             bookmarks: Vec::new(),
@@ -576,6 +582,7 @@ impl State {
             Command::Terms(open) => self.terms = open,
             Command::Tour(step) => self.go_on_tour(step),
             Command::Present(present) => self.presenting = present,
+            Command::Unfold(open) => self.unfolded = open,
             Command::PutBeside(id) => self.put_beside(id),
             Command::PutPane(which, choice) => self.put_pane(which, choice),
             Command::ClosePane(which) => self.close_pane(which),
