@@ -171,7 +171,7 @@ fn report(
     let Ok(looks) = Looks::decode(&subject.scene, Detail::Light, &cx) else { return Ok(None) };
     subject.looks = Arc::new(looks);
     let cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
-    let made = match everything::report(&subject, amount, None, &cx) {
+    let made = match everything::report(&subject, amount, (None, &mut |_| Ok(())), &cx) {
         Ok(made) => made,
         Err(ReportError::Cancelled(_)) => return Ok(None),
         Err(why) => return Err(fail(&why)),
