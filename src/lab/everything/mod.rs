@@ -5,7 +5,7 @@ mod amount;
 mod html;
 mod sections;
 
-pub use amount::Amount;
+pub use amount::{Amount, settings};
 
 use std::io::Cursor;
 use std::sync::Arc;
