@@ -198,7 +198,8 @@ mod tests {
         let array = b"\x93NUMPY\x01\x00\x00\x00";
         assert_eq!(RayFile::parse(b"0 0 1 0 0 -1\n", &cancel), Err(Cancelled.into()));
         assert!(RayFile::parse(array, &cancel).is_err());
-        let path = std::env::temp_dir().join(format!("boxwood-{}.rays", std::process::id()));
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("many.rays");
         std::fs::write(&path, "0 0 1 0 0 -1\n".repeat(200_000)).expect("room on the disk");
         let budget = Budget::new(1 << 30);
         let (bytes, memory) = read(&path, &budget, &Cancel::new()).expect("readable");
@@ -206,8 +207,7 @@ mod tests {
         assert_eq!(parse(&bytes).map(|file| file.rays.len()), Ok(200_000));
         assert_eq!(read(&path, &budget, &cancel).err(), Some(Cancelled.into()));
         assert!(matches!(read(&path, &Budget::new(1 << 20), &Cancel::new()), Err(RayFileError::Memory(_))));
-        std::fs::remove_file(&path).expect("there");
-        assert!(matches!(read(&path, &budget, &Cancel::new()), Err(RayFileError::Wrong(_))));
+        assert!(matches!(read(&folder.path().join("none.rays"), &budget, &Cancel::new()), Err(RayFileError::Wrong(_))));
     }
 
     #[cfg(unix)]
