@@ -4,8 +4,10 @@ mod common;
 
 use std::sync::Arc;
 
-use boxwood::accel::{Accel, registry};
+use boxwood::accel::visibility::Change;
+use boxwood::accel::{Accel, Visibility, registry};
 use boxwood::geometry::tri::TestKind;
+use boxwood::geometry::{Axis, HalfSpace, Side};
 use boxwood::lab::converge::{self, ConvergeCx, ConvergeOptions, Convergence, Reference, Rendered, Runner};
 use boxwood::lab::rms_difference;
 use boxwood::render::sampler::{SamplerKind, Sampling};
@@ -99,6 +101,23 @@ fn errors_fall_as_they_should_and_all_structures_make_the_same_pictures() {
     assert!(reference.suits(&job, SIZE, 1024) && !reference.suits(&job, SIZE, 1025) && !reference.suits(&job, [32, 31], 64));
     let darker = Job { transport: Transport { surfaces: 2, ..job.transport }, ..job.clone() };
     assert!(!reference.suits(&darker, SIZE, 64));
+    // What is cut away or hidden is not the same scene, whichever of both is kept.
+    let (accel, cx) = (job.accel.as_ref(), cx());
+    let hidden = Visibility::change(None, accel, (&accel.root(), Change::Hide), &cx.budget, &cx.cancel).expect("some");
+    let cut = |at: f32, side| Job { section: Some(HalfSpace { axis: Axis::X, at, side }), ..job.clone() };
+    let others = [
+        Job { visible: Some(Arc::new(hidden)), ..job.clone() },
+        cut(0.5, Side::Below),
+        cut(0.5, Side::Above),
+        cut(0.5f32.next_up(), Side::Below),
+    ];
+    let of = |job: &Job| Reference::render(job, SIZE, 1, (&cx.pool, &cx.cancel, &cx.progress)).expect("done");
+    for (i, other) in others.iter().enumerate() {
+        let made = of(other);
+        assert!(!reference.suits(other, SIZE, 64) && !made.suits(&job, SIZE, 1), "{other:?}");
+        assert!(others[..i].iter().all(|other| !made.suits(other, SIZE, 1)), "{other:?}");
+        assert_eq!(made.suits(other, SIZE, 1), other.visible.is_none(), "{other:?}");
+    }
     let mut moved = job;
     moved.camera.eye.x += 1e-3;
     assert!(!reference.suits(&moved, SIZE, 64));

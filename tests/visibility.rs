@@ -218,6 +218,13 @@ fn it_says_why_nothing_can_be_hidden() {
     assert!(matches!(hide(&none, &Cancel::new()), Err(VisibilityError::Memory(_))));
     assert!(matches!(hide(&Budget::unlimited(), &stopped), Err(VisibilityError::Cancelled(_))));
     assert_eq!(hide(&Budget::unlimited(), &Cancel::new()), Ok(0));
+    // Isolating takes a second set for a while.
+    let whole = Budget::of_mib(1);
+    let hidden = Visibility::change(None, accel.as_ref(), (&root, Change::Hide), &whole, &Cancel::new()).expect("fits");
+    let one = Budget::new(whole.used());
+    assert!(matches!(hide(&one, &Cancel::new()), Err(VisibilityError::Memory(_))));
+    assert_eq!((hide(&Budget::new(2 * whole.used()), &Cancel::new()), one.used()), (Ok(0), 0));
+    assert_eq!(hidden.count(), geometry.live_count() as u64);
     // What is charged is given back with the set.
     let budget = Budget::of_mib(1);
     drop(Visibility::change(None, accel.as_ref(), (&root, Change::Hide), &budget, &Cancel::new()).expect("fits"));

@@ -261,26 +261,45 @@ impl Outline {
     }
 
     /// The least chance that a line meets a cell and nothing that is in it: neither a child nor a reference.
-    fn wasted(&self, i: usize) -> f32 {
+    fn wasted(&self, i: usize, cancel: &Cancel) -> Result<f32, Cancelled> {
         if self.is_cut_at(i) || (self.is_leaf_at(i) && self.references[i] > 0) {
-            return 0.0;
+            return Ok(0.0);
         }
-        let met: f64 = self.children(num::index(i)).map(|child| f64::from(self.chances[child as usize])).sum();
-        (f64::from(self.chances[i]) - met) as f32
+        let mut met = 0.0;
+        for (k, child) in self.children(num::index(i)).enumerate() {
+            // A grid's cell has millions.
+            if k.is_multiple_of(PER_CHECK) {
+                cancel.check()?;
+            }
+            met += f64::from(self.chances[child as usize]);
+        }
+        Ok((f64::from(self.chances[i]) - met) as f32)
     }
 
-    fn find_greatest(&self, of: Rank) -> Option<u32> {
+    fn find_greatest(&self, of: Rank, cancel: &Cancel) -> Result<Option<u32>, Cancelled> {
         let leaf = |i: usize| self.is_leaf_at(i);
         let inner = |i: usize| !leaf(i);
-        let value = |i: usize| match of {
-            Rank::Depth => leaf(i).then(|| f32::from(self.depths[i])),
-            Rank::References => leaf(i).then_some(self.references[i] as f32),
-            Rank::Cost => (i > 0).then_some(self.own[i]),
-            Rank::Overlap => inner(i).then_some(self.overlaps[i] * self.chances[i]).filter(|x| !x.is_nan()),
-            Rank::Empty => Some(self.wasted(i)).filter(|wasted| *wasted > 0.0),
+        let value = |i: usize| -> Result<Option<f32>, Cancelled> {
+            Ok(match of {
+                Rank::Depth => leaf(i).then(|| f32::from(self.depths[i])),
+                Rank::References => leaf(i).then_some(self.references[i] as f32),
+                Rank::Cost => (i > 0).then_some(self.own[i]),
+                Rank::Overlap => inner(i).then_some(self.overlaps[i] * self.chances[i]).filter(|x| !x.is_nan()),
+                Rank::Empty => Some(self.wasted(i, cancel)?).filter(|wasted| *wasted > 0.0),
+            })
         };
-        let best = (0..self.nodes.len()).filter_map(|i| Some((i, value(i)?)));
-        best.reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(i, _)| num::index(i))
+        let mut best: Option<(usize, f32)> = None;
+        for i in 0..self.nodes.len() {
+            if i.is_multiple_of(PER_CHECK) {
+                cancel.check()?;
+            }
+            if let Some(value) = value(i)?
+                && best.is_none_or(|(_, most)| value > most)
+            {
+                best = Some((i, value));
+            }
+        }
+        Ok(best.map(|(i, _)| num::index(i)))
     }
 }
 
@@ -464,8 +483,7 @@ impl<'a> Walker<'a> {
         outline.shares.iter_mut().for_each(|share| *share = (*share * whole).min(1.0));
         self.outline.fit();
         for rank in Rank::ALL {
-            cancel.check()?;
-            let greatest = self.outline.find_greatest(rank);
+            let greatest = self.outline.find_greatest(rank, cancel)?;
             self.outline.greatest.iter_mut().filter(|known| known.0 == rank).for_each(|known| known.1 = greatest);
         }
         Ok(self.outline)
@@ -617,6 +635,9 @@ mod tests {
             let cancel = Cancel::new();
             cancel.cancel();
             assert_eq!(outline.cells(accel.as_ref(), outline.len() - 1, &cancel), Err(Cancelled), "{model} {id}");
+            for rank in Rank::ALL {
+                assert_eq!(outline.find_greatest(rank, &cancel), Err(Cancelled), "{model} {id}");
+            }
             assert!(outline.find(&[CellId { instance: 7, node: u32::MAX }]).is_none());
             let mut walked = 0;
             let whole = outline.walk_below(accel.as_ref(), &accel.root(), 0, &mut |cell, row| {

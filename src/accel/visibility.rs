@@ -73,12 +73,20 @@ impl Bits {
         }
     }
 
-    fn add(&mut self, other: &Self) {
-        self.0.iter_mut().zip(&other.0).for_each(|(word, more)| *word |= more);
+    fn add(&mut self, other: &Self, cancel: &Cancel) -> Result<(), Cancelled> {
+        for (words, more) in self.0.chunks_mut(PER_CHECK).zip(other.0.chunks(PER_CHECK)) {
+            cancel.check()?;
+            words.iter_mut().zip(more).for_each(|(word, more)| *word |= more);
+        }
+        Ok(())
     }
 
-    fn count(&self) -> u64 {
-        self.0.iter().map(|word| u64::from(word.count_ones())).sum()
+    fn count(&self, cancel: &Cancel) -> Result<u64, Cancelled> {
+        let count = |words: &[u64]| {
+            let set = words.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+            cancel.check().map(|()| set)
+        };
+        self.0.chunks(PER_CHECK).map(count).sum()
     }
 }
 
@@ -112,19 +120,26 @@ impl Visibility {
     ) -> Result<Self, VisibilityError> {
         let geometry = accel.geometry();
         let before = before.filter(|before| before.is_of(geometry));
-        let charge = budget.charge(bytes(geometry) + before.map_or(0, |before| before.hidden.bytes()))?;
+        let mut charge = budget.charge(bytes(geometry))?;
         let held = Triangles::below(accel, cell, cancel)?;
-        if held.count(geometry) == 0 {
+        if held.count(geometry, cancel)? == 0 {
             return Err(VisibilityError::Empty);
         }
         let hidden = match change {
-            Change::Isolate => held.others(geometry, cancel)?,
-            Change::Hide => held.with(before.map(|before| &before.hidden)),
+            Change::Isolate => {
+                // Those of the cell are there until all others are found.
+                let _meanwhile = budget.charge(bytes(geometry))?;
+                held.others(geometry, cancel)?
+            }
+            Change::Hide => {
+                charge.grow(before.map_or(0, |before| before.hidden.bytes()))?;
+                held.with(before.map(|before| &before.hidden), cancel)?
+            }
         };
         Ok(Self {
             number: NUMBER.fetch_add(1, Ordering::Relaxed),
             geometry: Arc::downgrade(geometry),
-            count: hidden.count(geometry),
+            count: hidden.count(geometry, cancel)?,
             hidden,
             _charge: charge,
         })
@@ -273,26 +288,35 @@ impl Triangles {
     }
 
     /// These and others.
-    fn with(mut self, others: Option<&Self>) -> Self {
-        let Some(others) = others else { return self };
-        self.flat.add(&others.flat);
-        for (instance, more) in &others.places {
+    fn with(mut self, others: Option<&Self>, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let Some(others) = others else { return Ok(self) };
+        self.flat.add(&others.flat, cancel)?;
+        for (i, (instance, more)) in others.places.iter().enumerate() {
+            if i.is_multiple_of(PER_CHECK) {
+                cancel.check()?;
+            }
             match (self.places.get_mut(instance), more) {
                 (Some(OfPlace::All), _) => {}
-                (Some(OfPlace::Some(bits)), OfPlace::Some(more)) => bits.add(more),
+                (Some(OfPlace::Some(bits)), OfPlace::Some(more)) => bits.add(more, cancel)?,
                 (Some(of_place), OfPlace::All) => *of_place = OfPlace::All,
                 (None, more) => drop(self.places.insert(*instance, more.clone())),
             }
         }
-        self
+        Ok(self)
     }
 
-    fn count(&self, geometry: &Geometry) -> u64 {
-        let of_place = |(instance, of_place): (&u32, &OfPlace)| match of_place {
-            OfPlace::Some(bits) => bits.count(),
-            OfPlace::All => live_in(geometry.placed(), *instance).map_or(0, |part| part.live_count() as u64),
-        };
-        self.flat.count() + self.places.iter().map(of_place).sum::<u64>()
+    fn count(&self, geometry: &Geometry, cancel: &Cancel) -> Result<u64, Cancelled> {
+        let mut count = self.flat.count(cancel)?;
+        for (i, (instance, of_place)) in self.places.iter().enumerate() {
+            if i.is_multiple_of(PER_CHECK) {
+                cancel.check()?;
+            }
+            count += match of_place {
+                OfPlace::Some(bits) => bits.count(cancel)?,
+                OfPlace::All => live_in(geometry.placed(), *instance).map_or(0, |part| part.live_count() as u64),
+            };
+        }
+        Ok(count)
     }
 
     fn bytes(&self) -> u64 {

@@ -1,14 +1,13 @@
 //! Rays in NumPy files, written and read; what is in them is told apart by [`crate::lab::ray_file::npy`].
 
-use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use npyz::WriterBuilder;
 
 use super::failure::Failure;
 use crate::geometry::Ray;
-use crate::lab::ray_file::npy::parse;
+use crate::lab::ray_file::{RayFileError, npy, read};
 use crate::task::{Budget, Cancel, Charge};
 
 /// Numbers in a row.
@@ -27,18 +26,15 @@ pub fn write_rays(rays: &[Ray], out: &mut impl Write) -> io::Result<()> {
 /// Reads rays from a file of float32 or float64, of either byte and row order. The charge is held as
 /// long as the rays are.
 pub fn read_rays(path: &Path, budget: &Budget, cancel: &Cancel) -> Result<(Vec<Ray>, Charge), Failure> {
-    let unreadable = |error: io::Error| Failure::of_input(path, error);
-    let file = File::open(path).map_err(unreadable)?;
-    let claimed = file.metadata().map_err(unreadable)?.len();
-    // The bytes, and as many again for the rays.
-    let memory = budget.charge(claimed.saturating_mul(2))?;
-    let mut bytes = Vec::new();
-    // A pipe claims nothing; a file that grows meanwhile is cut at what it claimed.
-    let limit = if claimed == 0 { budget.limit() / 4 } else { claimed };
-    file.take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
-    cancel.check()?;
-    let rays = parse(&bytes).map_err(|why| Failure::of_input(path, why))?;
-    Ok((rays, memory))
+    let failed = |error: RayFileError| -> Failure {
+        match error {
+            RayFileError::Cancelled(cancelled) => cancelled.into(),
+            RayFileError::Memory(over) => over.into(),
+            RayFileError::Wrong(why) => Failure::of_input(path, why),
+        }
+    };
+    let (bytes, memory) = read(path, budget, cancel).map_err(failed)?;
+    Ok((npy::parse(&bytes, usize::MAX, cancel).map_err(failed)?, memory))
 }
 
 #[cfg(test)]
@@ -52,6 +48,6 @@ mod tests {
         let rays: Vec<Ray> = (0..5).map(ray).collect();
         let mut bytes = Vec::new();
         write_rays(&rays, &mut bytes).expect("written");
-        assert_eq!(parse(&bytes), Ok(rays));
+        assert_eq!(npy::parse(&bytes, usize::MAX, &Cancel::new()), Ok(rays));
     }
 }

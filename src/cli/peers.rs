@@ -31,7 +31,7 @@ pub struct Args {
     #[arg(long, value_name = "ID[:K=V],..", value_delimiter = ',')]
     structures: Vec<Spec>,
     /// Sets a parameter of every structure of ours that has it, as in --set bins=16.
-    #[arg(long, value_name = "K=V")]
+    #[arg(long, value_name = "[ID.]K=V")]
     set: Vec<Setting>,
     /// Our triangle tests, between commas.
     #[arg(long, value_name = "TESTS", value_delimiter = ',', default_value = "fast,watertight")]

@@ -81,6 +81,11 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
     if !is_exr && ending.as_deref() != Some("png".as_ref()) {
         return Err(Failure::Input(format!("Can't write {}: pictures are .png or .exr files", args.output.display())));
     }
+    if args.heat_rays != HeatRays::Primary && !args.mode.is_heat() {
+        let (rays, mode) = (args.heat_rays.id(), args.mode.id());
+        let why = format!("--heat-rays {rays} is for heat maps, which {mode} is not: use --mode nodes, leaves, prims or stack");
+        return Err(Failure::Input(why));
+    }
     let out = OutFile::at(&args.output)?;
     let One(entry) = args.structure;
     let params = args.build.params(&[entry])?.remove(0);
@@ -135,13 +140,14 @@ impl Args {
             ("model", self.model.model.clone()),
             ("structure", self.structure.0.id.to_owned()),
             ("mode", self.mode.id().to_owned()),
-            ("heat_rays", self.heat_rays.id().to_owned()),
             ("spp", still.film.samples().to_string()),
             ("sampler", self.sampler.id().to_owned()),
             ("seed", self.light.seed.seed.to_string()),
             ("seconds", still.secs.to_string()),
         ];
-        notes.map(|(key, value)| (key.to_owned(), value)).into()
+        let heat = self.mode.is_heat().then(|| ("heat_rays", self.heat_rays.id().to_owned()));
+        let section = self.section.map(|section| ("section", section.to_string()));
+        notes.into_iter().chain(heat).chain(section).map(|(key, value)| (key.to_owned(), value)).collect()
     }
 }
 

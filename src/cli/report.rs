@@ -11,10 +11,11 @@ use super::failure::Failure;
 use super::output::print;
 use super::structures::{BuildArgs, Many};
 use super::table::facts;
+use crate::lab::converge::Reference;
 use crate::lab::everything::{self, Amount, ReportError, Subject};
 use crate::scene::CameraSpec;
 use crate::scene::texture::Detail;
-use crate::task::Cancel;
+use crate::task::{Cancel, Cancelled};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -60,12 +61,24 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         commands: amount.commands(&args.model.model, &ids, [&view, &light], true),
     };
     let build_cx = cx.build_cx();
-    let make = || everything::report(&subject, &amount, folder.reference(), &build_cx);
+    // What takes longest is there even if all else is stopped.
+    let mut keep = |reference: &Reference| folder.keep_reference(reference, &cx.cancel).map_err(unkept);
+    let make = || everything::report(&subject, &amount, (folder.reference(), &mut keep), &build_cx);
     for (name, bytes) in bar::watch("report", &build_cx.progress, make)? {
         folder.write(name, &bytes, &cx.cancel)?;
     }
     let page = args.output.join(everything::PAGE).display().to_string();
     print(&facts(&[("report", page), ("data", "report.json, convergence.csv, structures.csv, reference.exr".to_owned())]))
+}
+
+/// Why a reference could not be put into the folder.
+fn unkept(failure: Failure) -> ReportError {
+    let why = match failure {
+        Failure::Cancelled | Failure::Closed => return ReportError::Cancelled(Cancelled),
+        Failure::Input(why) => why,
+        Failure::Other(error) => format!("{error:#}"),
+    };
+    ReportError::Form { what: everything::REFERENCE, why }
 }
 
 impl From<ReportError> for Failure {

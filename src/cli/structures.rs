@@ -15,8 +15,9 @@ pub struct BuildArgs {
     /// baldwin-weber.
     #[arg(long, value_name = "TEST", default_value = "watertight")]
     pub test: TestKind,
-    /// Sets a parameter, as in --set bins=16. May be given many times.
-    #[arg(long, value_name = "K=V")]
+    /// Sets a parameter, as in --set bins=16, of every structure that has it; of one alone as in --set bvh.bins=16. May be
+    /// given many times.
+    #[arg(long, value_name = "[ID.]K=V")]
     pub set: Vec<Setting>,
 }
 
@@ -87,9 +88,11 @@ impl FromStr for Racers {
     }
 }
 
-/// `k=v`.
+/// `k=v`, or `structure.k=v`.
 #[derive(Clone, Debug)]
 pub struct Setting {
+    /// The structure that it is for; every one that has the parameter if there is none.
+    of: Option<&'static Entry>,
     id: String,
     value: String,
 }
@@ -98,34 +101,49 @@ impl FromStr for Setting {
     type Err = String;
 
     fn from_str(s: &str) -> Result<Self, String> {
-        let (id, value) = s.split_once('=').ok_or("a setting is K=V")?;
-        Ok(Self { id: id.trim().to_owned(), value: value.trim().to_owned() })
+        let (key, value) = s.split_once('=').ok_or("a setting is K=V, or ID.K=V for one structure")?;
+        let (of, id) = match key.split_once('.') {
+            Some((of, id)) => (Some(of.trim().parse::<One>()?.0), id),
+            None => (None, key),
+        };
+        Ok(Self { of, id: id.trim().to_owned(), value: value.trim().to_owned() })
     }
 }
 
 impl Setting {
+    /// Whether it is for a structure, one of so many.
+    fn is_for(&self, entry: &Entry, all: usize) -> bool {
+        let has = || all == 1 || entry.params.iter().any(|param| param.id == self.id);
+        self.of.map_or_else(has, |of| of.id == entry.id)
+    }
+
     /// Sets the parameter of a structure.
     #[cfg(feature = "peers")]
     pub fn apply(&self, entry: &Entry, params: &mut ParamValues) -> Result<(), Failure> {
+        if let Some(of) = self.of.filter(|of| of.id != entry.id) {
+            return Err(Failure::Input(format!("{}: a setting for {}", entry.id, of.id)));
+        }
         params.set(&self.id, &self.value).map_err(|error| Failure::Input(format!("{}: {error}", entry.id)))
     }
 }
 
 impl BuildArgs {
-    /// The parameters of each structure. A setting goes to every structure that has the parameter;
-    /// one that fits none is an error.
+    /// The parameters of each structure. A setting goes to the structure that it names, or to every one that has the
+    /// parameter; one that fits none is an error.
     pub fn params(&self, entries: &[&'static Entry]) -> Result<Vec<ParamValues>, Failure> {
         let mut all: Vec<ParamValues> = entries.iter().map(|entry| entry.defaults()).collect();
-        for Setting { id, value } in &self.set {
-            let has = |entry: &Entry| entry.params.iter().any(|param| param.id == id);
-            let takers = entries.iter().zip(&mut all).filter(|(entry, _)| has(entry) || entries.len() == 1);
+        for setting in &self.set {
+            let Setting { of, id, value } = setting;
+            let takers = entries.iter().zip(&mut all).filter(|(entry, _)| setting.is_for(entry, entries.len()));
             let mut taken = false;
             for (entry, params) in takers {
                 params.set(id, value).map_err(|error| Failure::Input(format!("{}: {error}", entry.id)))?;
                 taken = true;
             }
-            if !taken {
-                return Err(Failure::Input(format!("none of these structures has a parameter '{id}'")));
+            match of {
+                _ if taken => {}
+                Some(of) => return Err(Failure::Input(format!("{} is none of these structures, but has a setting", of.id))),
+                None => return Err(Failure::Input(format!("none of these structures has a parameter '{id}'"))),
             }
         }
         Ok(all)
@@ -159,12 +177,29 @@ mod tests {
     }
 
     #[test]
+    fn what_a_report_says_of_settings_is_read_back() {
+        let Many(all) = "wide,bvh,kdtree,grid2".parse().expect("known");
+        let params = args(&["bvh.c_trav=2.5", "kdtree.c_trav=3", "bvh.builder=ploc"]).params(&all).expect("known");
+        let structures: Vec<_> = all.iter().copied().zip(params.clone()).collect();
+        let said = crate::lab::everything::settings(&structures);
+        let set: Vec<&str> = said.split(" --set ").skip(1).collect();
+        assert_eq!(set.len(), 3, "{said}");
+        assert_eq!(args(&set).params(&all).expect("as said"), params);
+        assert_eq!(crate::lab::everything::settings(&[]), "");
+    }
+
+    #[test]
     fn settings_reach_every_structure_that_has_them() {
         let Many(all) = "brute,bvh,kdtree".parse().expect("known");
         let params = args(&["c_trav=2.5"]).params(&all).expect("some have it");
         assert_eq!((params[1].float("c_trav"), params[2].float("c_trav")), (2.5, 2.5));
         assert!(args(&["leaves=3"]).params(&all).is_err());
         assert!(args(&["bins=zero"]).params(&all).is_err());
+        let params = args(&["c_trav=2.5", "kdtree.c_trav=3"]).params(&all).expect("both have it");
+        assert_eq!((params[1].float("c_trav"), params[2].float("c_trav")), (2.5, 3.0));
+        assert!(args(&["bvh.leaves=3"]).params(&all).is_err(), "it has none of that name");
+        assert!(matches!(args(&["grid.c_trav=3"]).params(&all), Err(Failure::Input(why)) if why.contains("grid is none of")));
+        assert!("oak.bins=8".parse::<Setting>().is_err_and(|why| why.contains("no structure 'oak'")));
         assert!(matches!(args(&["bins=8"]).params(&all[..1]), Err(Failure::Input(why)) if why.contains("there is none")));
     }
 }

@@ -77,11 +77,12 @@ pub struct BruteCheck {
 
 /// The most pixels that are kept of those that differ.
 pub const MOST: usize = 1000;
-/// Pixels that a thread takes at a time.
-const CHUNK: u64 = 64;
+/// Neighbouring pixels whose rays are one batch, as those of a picture are: some structures trace many rays at once otherwise
+/// than one.
+const RUN: u64 = 64;
 
-/// Traces the rays through the middles of pixels through a view's structure and through `brute`, and compares the hits to
-/// the bit. No ray begins after `secs` seconds.
+/// Traces the rays through the middles of pixels through a view's structure, those of neighbouring ones at once, and one by one
+/// through `brute`, and compares the hits to the bit. No ray begins after `secs` seconds.
 ///
 /// # Errors
 /// [`Cancelled`] within 100 ms of the request.
@@ -95,26 +96,32 @@ pub fn check_by_brute_force(
 ) -> Result<BruteCheck, Cancelled> {
     let (start, all) = (Instant::now(), rect.pixels());
     let reference = Job { accel: Arc::clone(brute), ..view.clone() };
-    let stride = stride(all);
+    let runs = all.div_ceil(RUN);
+    let stride = stride(runs);
     progress.start("pixels", all);
-    let chunk = |chunk: u64| {
+    let run = |number: u64| {
         let mut found = BruteCheck::default();
-        for number in chunk * CHUNK..all.min((chunk + 1) * CHUNK) {
+        if start.elapsed().as_secs_f64() >= secs {
+            return Ok(found);
+        }
+        // In 128 bits, so that any picture will do.
+        let scattered = u64::try_from(u128::from(number) * u128::from(stride) % u128::from(runs)).unwrap_or(0);
+        let pixels: Vec<(u32, u32)> = (scattered * RUN..all.min((scattered + 1) * RUN)).map(|n| rect.pixel(n)).collect();
+        let rays: Vec<Ray> = pixels.iter().map(|pixel| view.middle_ray(*pixel, size)).collect();
+        let mut own = vec![None; rays.len()];
+        view.trace(&rays, Mode::Closest, &mut own, cancel)?;
+        for ((pixel, ray), own) in pixels.iter().zip(&rays).zip(own) {
             if start.elapsed().as_secs_f64() >= secs {
                 break;
             }
-            // In 128 bits, so that any picture will do.
-            let scattered = u128::from(number) * u128::from(stride) % u128::from(all);
-            let pixel = rect.pixel(u64::try_from(scattered).unwrap_or(0));
-            let ray = view.middle_ray(pixel, size);
-            let [brute, own] = [&reference, view].map(|job| hit(job, &ray, cancel));
-            found.add([pixel.0, pixel.1], ray, [brute?, own?], view.accel.as_ref());
+            let brute = hit(&reference, ray, cancel)?;
+            found.add([pixel.0, pixel.1], *ray, [brute, own], view.accel.as_ref());
             progress.advance(1);
         }
         Ok(found)
     };
-    let chunks = (0..all.div_ceil(CHUNK)).into_par_iter();
-    let mut found = pool.run(|| chunks.map(chunk).try_reduce(BruteCheck::default, |a, b| Ok(a.with(b))))?;
+    let all_runs = (0..runs).into_par_iter();
+    let mut found = pool.run(|| all_runs.map(run).try_reduce(BruteCheck::default, |a, b| Ok(a.with(b))))?;
     (found.all, found.secs) = (all, start.elapsed().as_secs_f64());
     Ok(found)
 }
@@ -125,11 +132,11 @@ fn hit(job: &Job, ray: &Ray, cancel: &Cancel) -> Result<Option<Hit>, Cancelled> 
     Ok(hits[0])
 }
 
-/// Steps of so many pixels, from the last to the first, visit all of them once, and the first few are spread over all: near
+/// Steps of so many, from the last to the first of `n`, visit all of them once, and the first few are spread over all: near
 /// the golden section, and with no divisor in common.
-fn stride(pixels: u64) -> u64 {
-    let golden = num::floor_index(pixels as f64 * 0.618_033_988_749_895, usize::MAX) as u64;
-    (golden.max(1)..).find(|step| gcd(*step, pixels) == 1).unwrap_or(1)
+fn stride(n: u64) -> u64 {
+    let golden = num::floor_index(n as f64 * 0.618_033_988_749_895, usize::MAX) as u64;
+    (golden.max(1)..).find(|step| gcd(*step, n) == 1).unwrap_or(1)
 }
 
 const fn gcd(a: u64, b: u64) -> u64 {
@@ -206,11 +213,14 @@ mod tests {
 
     #[test]
     fn boxes_answer_as_brute_force_does() {
-        let (view, brute) = view("builtin:teapot?triangles=1000", "bvh");
         let rect = PixelRect { at: [10, 5], size: [31, 17] };
-        let found = check(&view, &brute, rect, f64::INFINITY);
-        assert_eq!((found.pixels, found.all, found.unlike), (31 * 17, 31 * 17, 0));
-        assert!(found.examples.is_empty() && found.largest == 0.0);
+        for id in ["bvh", "wide"] {
+            let (view, brute) = view("builtin:teapot?triangles=1000", id);
+            let found = check(&view, &brute, rect, f64::INFINITY);
+            assert_eq!((found.pixels, found.all, found.unlike), (31 * 17, 31 * 17, 0), "{id}");
+            assert!(found.examples.is_empty() && found.largest == 0.0, "{id}");
+        }
+        let (view, brute) = view("builtin:teapot?triangles=1000", "bvh");
         let nothing = check(&view, &brute, PixelRect { at: [10, 5], size: [0, 17] }, f64::INFINITY);
         assert_eq!((nothing.pixels, nothing.all), (0, 0));
         let at_once = check(&view, &brute, rect, 0.0);
@@ -233,12 +243,12 @@ mod tests {
     }
 
     #[test]
-    fn steps_visit_every_pixel_once() {
-        for pixels in [1, 2, 3, 12, 2400, 4099] {
-            let step = stride(pixels);
-            let mut seen: Vec<u64> = (0..pixels).map(|n| n * step % pixels).collect();
+    fn steps_visit_every_run_once() {
+        for runs in [1, 2, 3, 12, 2400, 4099] {
+            let step = stride(runs);
+            let mut seen: Vec<u64> = (0..runs).map(|n| n * step % runs).collect();
             seen.sort_unstable();
-            assert!(seen.into_iter().eq(0..pixels), "{pixels}");
+            assert!(seen.into_iter().eq(0..runs), "{runs}");
         }
     }
 

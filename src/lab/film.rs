@@ -63,6 +63,9 @@ pub enum FilmError {
     /// It does not fit.
     #[error("it would take more memory than there is: {0}. Raise the memory budget.")]
     Memory(#[from] OverBudget),
+    /// The list of cells is not whole.
+    #[error("the list of cells ends at the instances. Raise the memory budget.")]
+    Cut,
     /// The upper level is divided, and what is below it merged.
     #[error("the level above is divided and the trees below it are merged, so no one order holds for both. Use another builder.")]
     TwoOrders,
@@ -88,6 +91,10 @@ pub struct Film {
     rounds: Vec<u8>,
     /// What the levels of cells below instances count from, so that they come after the upper ones.
     shift: u32,
+    /// Triangles of the model.
+    triangles: u64,
+    /// What cells hold, called one: references where a triangle may be in several.
+    held: &'static str,
     charge: Charge,
 }
 
@@ -95,13 +102,16 @@ impl Film {
     /// Makes the film of a structure from the list of its cells.
     ///
     /// # Errors
-    /// Stopped, it does not fit, or two orders would be mixed.
+    /// The list ends at the instances, stopped, it does not fit, or two orders would be mixed.
     pub fn of(
         accel: &dyn Accel,
         outline: Arc<Outline>,
         params: &ParamValues,
         (budget, cancel, progress): (&Budget, &Cancel, &Progress),
     ) -> Result<Self, FilmError> {
+        if outline.is_cut() {
+            return Err(FilmError::Cut);
+        }
         let (order, two_levels) = (Order::of(params), accel.levels().is_some());
         if order == Order::Merges && two_levels {
             return Err(FilmError::TwoOrders);
@@ -111,8 +121,12 @@ impl Film {
         let rounds = if order == Order::Merges { rounds(&outline, &mut charge, cancel)? } else { Vec::new() };
         let shift = if two_levels { levels_above(&outline, cancel)? } else { 0 };
         let events = Events::Rows(Vec::new());
-        let costs = Costs { accel, outline: &Arc::clone(&outline), c_isect: SahWeights::of(params).c_isect, order };
-        let mut film = Self { outline, order, events, costs: Vec::new(), rounds, shift, charge };
+        let triangles = accel.geometry().counts().live;
+        let one_level = (!two_levels).then_some(triangles);
+        let costs = Costs { accel, outline: &Arc::clone(&outline), c_isect: SahWeights::of(params).c_isect, order, one_level };
+        let once = !outline.is_empty() && u64::from(outline.row(0).references) == triangles;
+        let held = if accel.layout().nests() && once { "triangle" } else { "reference" };
+        let mut film = Self { outline, order, events, costs: Vec::new(), rounds, shift, triangles, held, charge };
         film.fill(&costs, cancel, progress)?;
         film.charge.grow(BYTES * film.costs.len() as u64)?;
         Ok(film)
@@ -132,7 +146,7 @@ impl Film {
                 continue;
             }
             let level = levels.entry(self.level(row)).or_default();
-            *level = (level.0 + 1, level.1 + costs.change(row));
+            *level = (level.0 + 1, level.1 + costs.event(row, cancel)?.0);
             if rows.len() <= MOST {
                 rows.push(row);
             }
@@ -144,9 +158,13 @@ impl Film {
         };
         if rows.len() <= MOST {
             rows.sort_unstable_by_key(|row| self.key(*row));
-            self.costs.extend(rows.iter().map(|row| after(costs.change(*row))));
-            let parts = |row: u32| self.outline.children(row).count();
-            self.events = Events::Rows(rows.into_iter().map(|row| (row, num::index(parts(row)))).collect());
+            let mut events = Vec::with_capacity(rows.len());
+            for row in rows {
+                let (change, parts) = costs.event(row, cancel)?;
+                self.costs.push(after(change));
+                events.push((row, parts));
+            }
+            self.events = Events::Rows(events);
         } else {
             self.costs.extend(levels.values().map(|level| after(level.1)));
             self.events = Events::Levels(levels.into_iter().map(|(level, (cells, _))| (level, cells)).collect());
@@ -174,7 +192,7 @@ impl Film {
     }
 
     /// The SAH cost at a position, the last one beyond the end. From the root down it is that of the tree so far, with cells that
-    /// are yet to be divided as leaves that hold all references below them; from the leaves up it is what leaves and merged
+    /// are yet to be divided as leaves that hold all references below them, and the undivided root each triangle once; from the leaves up it is what leaves and merged
     /// cells come to so far. At the end both are the cost of the finished structure.
     pub fn cost(&self, at: u32) -> f64 {
         let cost = self.costs.get(at as usize).or(self.costs.last());
@@ -233,7 +251,7 @@ impl Film {
             (None, _) => self.tell_start(),
             (Some(i), Events::Rows(rows)) => self.tell_cell(rows[i as usize], &number, &last),
             (Some(i), Events::Levels(levels)) => {
-                let cells = levels[i as usize].1;
+                let cells = levels[i as usize].1.into();
                 match self.order {
                     Order::Splits => format!("Level {number} of {last}: {} divided", counted(cells, "cell")),
                     Order::Merges => format!("Round {number} of {last}: {}", counted(cells, "merge")),
@@ -248,7 +266,7 @@ impl Film {
     }
 
     fn tell_start(&self) -> String {
-        let all = counted(self.outline.row(0).references, "triangle");
+        let all = counted(self.triangles, "triangle");
         match self.order {
             Order::Splits => format!("Before the first split: {all} in one cell"),
             Order::Merges => format!("Before the first merge: {all} in leaves"),
@@ -256,12 +274,18 @@ impl Film {
     }
 
     fn tell_cell(&self, (row, parts): (u32, u32), number: &str, last: &str) -> String {
-        let whole = counted(self.outline.row(row).references, "triangle");
+        // The root is the model: what cells hold more of them comes of dividing it.
+        let whole = match self.order {
+            Order::Splits if row == 0 => counted(self.triangles, "triangle"),
+            _ => counted(self.outline.row(row).references.into(), self.held),
+        };
         let parts = if parts > TOLD {
             format!("{} cells", format::count(parts.into()))
         } else {
             let held = |part: u32| format::count(self.outline.row(part).references.into());
-            listed(&self.outline.children(row).map(held).collect::<Vec<_>>())
+            let listed = listed(&self.outline.children(row).map(held).collect::<Vec<_>>());
+            let unlike = row == 0 && self.order == Order::Splits && self.held != "triangle";
+            if unlike { format!("{listed} {}s", self.held) } else { listed }
         };
         match self.order {
             Order::Splits => format!("Split {number} of {last}: {whole} into {parts}"),
@@ -274,8 +298,8 @@ impl Film {
 }
 
 /// `1 cell`, `1 024 cells`.
-fn counted(n: u32, what: &str) -> String {
-    format!("{} {what}{}", format::count(n.into()), if n == 1 { "" } else { "s" })
+fn counted(n: u64, what: &str) -> String {
+    format!("{} {what}{}", format::count(n), if n == 1 { "" } else { "s" })
 }
 
 /// `1, 2 and 3`.
@@ -325,6 +349,8 @@ struct Costs<'a> {
     outline: &'a Outline,
     c_isect: f64,
     order: Order,
+    /// Triangles of the model, where there is one level: until it is divided the root holds each once.
+    one_level: Option<u64>,
 }
 
 impl Costs<'_> {
@@ -339,7 +365,8 @@ impl Costs<'_> {
             return self.own(row);
         }
         let cell = self.outline.row(row);
-        let tests = self.c_isect * cell.chance * f64::from(cell.references);
+        let references = self.one_level.filter(|_| row == 0).map_or(f64::from(cell.references), |triangles| triangles as f64);
+        let tests = self.c_isect * cell.chance * references;
         let steps = self.accel.layout_of(cell.id.instance).slack().is_some();
         tests + if steps { self.own(row) } else { 0.0 }
     }
@@ -361,15 +388,21 @@ impl Costs<'_> {
         }
     }
 
-    /// What a cell's event adds.
-    fn change(&self, row: u32) -> f64 {
-        match self.order {
-            Order::Splits => {
-                let parts: f64 = self.outline.children(row).map(|part| self.undivided(part)).sum();
-                self.own(row) + parts - self.undivided(row)
+    /// What a cell's event adds, and how many cells it is divided into or merged from.
+    fn event(&self, row: u32, cancel: &Cancel) -> Result<(f64, u32), Cancelled> {
+        let (mut sum, mut parts) = (0.0, 0u32);
+        for part in self.outline.children(row) {
+            // A grid's cell has millions.
+            if parts.is_multiple_of(PER_CHECK) {
+                cancel.check()?;
             }
-            Order::Merges => self.own(row),
+            parts += 1;
+            if self.order == Order::Splits {
+                sum += self.undivided(part);
+            }
         }
+        let before = if self.order == Order::Splits { self.undivided(row) } else { 0.0 };
+        Ok((self.own(row) + sum - before, parts))
     }
 }
 
@@ -474,6 +507,9 @@ mod tests {
         let film = film(SMALL, "bvh", &[("c_isect", "2")]);
         let one_leaf = 2.0 * f64::from(film.outline().row(0).references);
         assert!((film.cost(0) / one_leaf - 1.0).abs() < 1e-6, "{}", film.cost(0));
+        // However often the cells of a partition hold a triangle.
+        let film = self::film(SMALL, "kdtree", &[("c_isect", "2")]);
+        assert!((film.cost(0) / (2.0 * film.triangles as f64) - 1.0).abs() < 1e-6, "{}", film.cost(0));
     }
 
     #[test]
@@ -515,6 +551,14 @@ mod tests {
         let (last, cost) = (split.last(), format::number(split.cost(1)));
         let told = format!("Split 1 of {last}: {all} triangles into {} and {}, SAH cost of the tree {cost}.", parts[0], parts[1]);
         assert_eq!(split.tell(1), told);
+        let kd = film(SMALL, "kdtree", &[]);
+        let parts: Vec<u32> = kd.outline().children(0).map(|part| kd.outline().row(part).references).collect();
+        assert!(kd.outline().row(0).references > all, "some triangles are in several leaves");
+        assert!(kd.tell(0).starts_with(&format!("Before the first split: {all} triangles in one cell, ")), "{}", kd.tell(0));
+        let told = format!(": {all} triangles into {} and {} references, SAH cost of the tree ", parts[0], parts[1]);
+        assert!(kd.tell(1).contains(&told), "{}", kd.tell(1));
+        let second = counted(kd.outline().row(kd.just(2).expect("a cell")).references.into(), "reference");
+        assert!(kd.tell(2).contains(&format!(": {second} into ")), "{}", kd.tell(2));
         let merge = film(SMALL, "bvh", &[("builder", "ploc")]);
         assert!(
             merge.tell(1).contains(", in round 1: ")
@@ -531,6 +575,23 @@ mod tests {
         assert_eq!(levels_above(film.outline(), &cx.cancel), Err(Cancelled.into()));
         let mut charge = cx.budget.charge(0).expect("nothing");
         assert_eq!(rounds(film.outline(), &mut charge, &cx.cancel), Err(Cancelled.into()));
+    }
+
+    #[test]
+    fn there_is_none_of_a_list_that_ends_at_the_instances() {
+        let (cx, load) = (BuildCx::unattended(1), LoadCx::unattended());
+        let scene = open("builtin:sphere-flake?triangles=100000", &load).expect("built in");
+        let geometry = Arc::new(Geometry::with_instances(&scene, &load).expect("fits"));
+        let entry = registry::find("bvh").expect("registered");
+        let params = entry.defaults();
+        let accel = entry.build(&geometry, TestKind::Watertight, &params, &cx).expect("builds");
+        // The first rows are charged less than that, and those after them more.
+        let budget = Budget::new(1 << 20);
+        let outline = Outline::of(accel.as_ref(), SahWeights::of(&params), (&budget, &cx.cancel, &cx.progress));
+        let cut = outline.expect("the upper level fits");
+        assert!(cut.is_cut());
+        let made = Film::of(accel.as_ref(), Arc::new(cut), &params, (&cx.budget, &cx.cancel, &cx.progress));
+        assert!(matches!(made, Err(FilmError::Cut)));
     }
 
     #[test]

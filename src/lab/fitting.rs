@@ -16,7 +16,7 @@ use crate::geometry::Ray;
 use crate::geometry::num::{floor_index, index};
 use crate::render::Job;
 use crate::scene::{Geometry, PrimRef};
-use crate::task::{Cancel, Cancelled, Pool, Progress};
+use crate::task::{Budget, Cancel, Cancelled, Charge, OverBudget, Pool, Progress};
 
 /// A kind of volume around the node, in figures.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +75,10 @@ const SECS: f64 = 2.0;
 const CHUNK: usize = 64;
 /// Cells between two looks at whether to stop.
 const PER_CHECK: usize = 1 << 12;
+/// Bytes of a triangle in the list of those of a node: its number, and as much again while the list grows.
+const LISTED: u64 = 2 * 4;
+/// Bytes of a triangle's corners in 64 bits, as a volume is put around them.
+const POINTS: u64 = 3 * 24;
 /// Tests of a volume in a round of its timing, about.
 const TESTS: usize = 100_000;
 /// Rounds of it.
@@ -85,37 +89,51 @@ pub fn can_fit(accel: &dyn Accel, cell: &Cell) -> bool {
     accel.levels().is_none() || cell.id.instance != 0
 }
 
+/// Why volumes can't be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FitError {
+    /// Stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The node's triangles, or the rays, do not fit.
+    #[error(transparent)]
+    Memory(#[from] OverBudget),
+}
+
 /// Compares volumes around the triangles of a cell of the job's structure, with rays of its view of that size; `None` if it has
 /// none, or [they can't be compared](can_fit).
 ///
 /// The caller sees to it that nothing else keeps the processors busy.
 ///
 /// # Errors
-/// [`Cancelled`] within 100 ms of the request.
+/// It does not fit, or it was asked to stop: within 100 ms of the request.
 pub fn fit_volumes(
     job: &Job,
     size: [u32; 2],
     cell: &Cell,
     pool: &Pool,
-    cancel: &Cancel,
-    progress: &Progress,
-) -> Result<Option<Fitting>, Cancelled> {
+    (budget, cancel, progress): (&Budget, &Cancel, &Progress),
+) -> Result<Option<Fitting>, FitError> {
     let accel = job.accel.as_ref();
     progress.start("triangles", 0);
     if !can_fit(accel, cell) {
         return Ok(None);
     }
-    let mut node = Node::new(accel, cell);
-    let triangles = node.gather(cell, cancel)?;
+    let mut memory = budget.charge(0)?;
+    let mut node = Node::new(accel, cell, &mut memory)?;
+    let triangles = node.gather(cell, &mut memory, cancel)?;
     if triangles.is_empty() {
         return Ok(None);
     }
     let taken = pick(&triangles, MOST_TRIANGLES);
+    memory.grow(taken.len() as u64 * POINTS * kinds().count() as u64)?;
     progress.start("fit", kinds().count() as u64);
     let volumes = fitted(node.geometry, &taken, pool, cancel, progress)?;
 
     progress.start("rays", FOLLOWED as u64);
-    let rays = rays_of(job, size, pool, cancel)?;
+    let rays = rays_of(job, size, pool, &mut memory, cancel)?;
+    // They are found in parts, and then put together.
+    memory.grow(rays.len() as u64 * 2 * size_of::<Near>() as u64)?;
     let near = near(&node, &volumes, &rays, pool, cancel)?;
     let chosen = pick(&near, FOLLOWED);
     let hits = hits(&node, &chosen.iter().map(|near| near.world).collect::<Vec<_>>(), pool, cancel, progress)?;
@@ -163,20 +181,28 @@ struct Node<'a> {
 
 impl<'a> Node<'a> {
     /// Of no triangles yet.
-    fn new(accel: &'a dyn Accel, cell: &Cell) -> Self {
+    fn new(accel: &'a dyn Accel, cell: &Cell, memory: &mut Charge) -> Result<Self, OverBudget> {
         let geometry = accel.geometry_of(cell.id.instance);
-        Self { accel, level: accel.level(cell.id.instance), geometry, members: vec![0; geometry.triangle_count().div_ceil(64)] }
+        let words = geometry.triangle_count().div_ceil(64);
+        memory.grow(words as u64 * 8)?;
+        Ok(Self { accel, level: accel.level(cell.id.instance), geometry, members: vec![0; words] })
     }
 
     /// Takes in the triangles in a cell and below it, and returns them, each once, in the order of a walk: neighbours are near
     /// each other.
-    fn gather(&mut self, cell: &Cell, cancel: &Cancel) -> Result<Vec<PrimRef>, Cancelled> {
-        let (mut order, mut looked, mut stopped) = (Vec::new(), 0usize, Ok(()));
+    fn gather(&mut self, cell: &Cell, memory: &mut Charge, cancel: &Cancel) -> Result<Vec<PrimRef>, FitError> {
+        let (mut order, mut room, mut looked, mut stopped) = (Vec::new(), 0usize, 0usize, Ok(()));
         let (accel, members) = (self.accel, &mut self.members);
         walk_below(accel, *cell, &mut |cell| {
             looked += 1;
             if looked.is_multiple_of(PER_CHECK) {
-                stopped = cancel.check();
+                stopped = cancel.check().map_err(FitError::from);
+            }
+            let need = order.len() + if cell.is_leaf() { cell.prims() as usize } else { 0 };
+            if stopped.is_ok() && need > room {
+                let more = (need - room).max(PER_CHECK);
+                room += more;
+                stopped = memory.grow(more as u64 * LISTED).map_err(FitError::from);
             }
             if stopped.is_err() {
                 return ControlFlow::Break(());
@@ -250,11 +276,13 @@ fn fitted(
 }
 
 /// Rays of the view: primary ones, and some that leave what they meet.
-fn rays_of(job: &Job, size: [u32; 2], pool: &Pool, cancel: &Cancel) -> Result<Vec<Ray>, Cancelled> {
-    let of = |kind, pixels: f64| {
+fn rays_of(job: &Job, size: [u32; 2], pool: &Pool, memory: &mut Charge, cancel: &Cancel) -> Result<Vec<Ray>, FitError> {
+    let mut of = |kind, pixels: f64| -> Result<RaySet, FitError> {
         let shrink = (pixels / (f64::from(size[0].max(1)) * f64::from(size[1].max(1)))).sqrt().min(1.0);
         let [width, height] = size.map(|n| index(floor_index((f64::from(n) * shrink).ceil().max(1.0), 1 << 16)));
-        RaySet::generate(kind, job, width, height, pool, cancel)
+        // Rays are made in parts, each with its pixel, and then put together.
+        memory.grow(u64::from(width) * u64::from(height) * 2 * (size_of::<Ray>() as u64 + 8))?;
+        Ok(RaySet::generate(kind, job, width, height, pool, cancel)?)
     };
     let mut rays = of(RayKind::Primary, PRIMARY)?.rays;
     rays.extend(of(RayKind::Diffuse, DIFFUSE)?.rays);
@@ -358,7 +386,7 @@ mod tests {
 
     fn fit(job: &Job, cell: &Cell) -> Fitting {
         let pool = Pool::new("test", 1);
-        let fitted = fit_volumes(job, [64, 64], cell, &pool, &Cancel::new(), &Progress::new());
+        let fitted = fit_volumes(job, [64, 64], cell, &pool, (&Budget::unlimited(), &Cancel::new(), &Progress::new()));
         fitted.expect("not cancelled").expect("has triangles")
     }
 
@@ -390,6 +418,23 @@ mod tests {
             assert!(hit > least && fitting.rows.iter().all(|row| row.met - row.in_vain == hit));
             assert!(fitting.rows.iter().all(|row| row.test_ns > 0.0));
         }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_and_given_back() {
+        let (job, pool, progress) = (job("bvh"), Pool::new("test", 1), Progress::new());
+        let fit = |budget: &Budget, cancel: &Cancel| {
+            fit_volumes(&job, [64, 64], &job.accel.root(), &pool, (budget, cancel, &progress)).map(|fitting| fitting.is_some())
+        };
+        // No bits, no list, no points, no rays.
+        for room in [0, 1000, 20_000, 600_000] {
+            assert!(matches!(fit(&Budget::new(room), &Cancel::new()), Err(FitError::Memory(_))), "{room}");
+        }
+        let budget = Budget::new(1 << 30);
+        assert_eq!((fit(&budget, &Cancel::new()), budget.used()), (Ok(true), 0));
+        let cancel = Cancel::new();
+        cancel.cancel();
+        assert_eq!(fit(&budget, &cancel), Err(FitError::Cancelled(Cancelled)));
     }
 
     #[test]

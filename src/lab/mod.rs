@@ -56,7 +56,7 @@ pub use costs::{Costs, FitOptions, fit_costs};
 pub use differing::{Differing, differing};
 pub use division::{Alternative, Division, Side};
 pub use facts::{MachineFacts, SceneFacts};
-pub use fitting::{FitRow, Fitting, can_fit, fit_volumes, fitted_kinds};
+pub use fitting::{FitError, FitRow, Fitting, can_fit, fit_volumes, fitted_kinds};
 pub use image_error::{ImageErrors, Metric, rms_difference};
 pub use lines::line;
 pub use measure::{Contestant, Fairness, MeasureOptions, measure};

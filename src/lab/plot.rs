@@ -4,11 +4,13 @@ use std::ops::Range;
 
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg;
 
 use crate::accel::registry::{self, Family};
+use crate::geometry::num::floor_index;
 
 /// One pair of axes.
 #[derive(Clone, Debug)]
@@ -75,6 +77,8 @@ impl Curve {
 /// Pixels of a panel.
 const SIZE: (u32, u32) = (640, 480);
 const TEXT: i32 = 15;
+/// Numbers along an axis, at most.
+const LABELS: usize = 11;
 
 type Failed = DrawingAreaErrorKind<std::io::Error>;
 
@@ -130,9 +134,20 @@ fn draw(area: &DrawingArea<SVGBackend<'_>, Shift>, panel: &Panel) -> Result<(), 
 impl Scale {
     /// Whether a point has a place.
     fn has(self, dot: &Dot) -> bool {
-        let (x, y) = dot.at;
-        let fits = |v: f64| v.is_finite() && (self == Self::Even || v > 0.0);
-        fits(x) && fits(y)
+        self.fits(dot.at.0) && self.fits(dot.at.1)
+    }
+
+    /// Whether a coordinate has one.
+    fn fits(self, x: f64) -> bool {
+        x.is_finite() && (self == Self::Even || x > 0.0)
+    }
+
+    /// What is written along an axis.
+    fn labels(self, axis: &Range<f64>) -> Box<dyn Fn(&f64) -> String> {
+        match self {
+            Self::Log => Box::new(short),
+            Self::Even => Box::new(even(axis.clone())),
+        }
     }
 
     /// An axis that holds all of these, with some room.
@@ -163,8 +178,10 @@ where
 {
     let [x, y] = panel.axes;
     let text = ("sans-serif", TEXT);
+    let labels = [&xs, &ys].map(|axis| panel.scale.labels(axis));
     let mesh = &mut chart.configure_mesh();
-    mesh.x_desc(x).y_desc(y).label_style(text).axis_desc_style(text).x_label_formatter(&short).y_label_formatter(&short);
+    mesh.x_labels(LABELS).y_labels(LABELS).x_label_formatter(&*labels[0]).y_label_formatter(&*labels[1]);
+    mesh.x_desc(x).y_desc(y).label_style(text).axis_desc_style(text);
     mesh.light_line_style(BLACK.mix(0.04)).bold_line_style(BLACK.mix(0.12)).draw()?;
     let least = all.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     if let Some((least, (name, law))) = least.zip(panel.guide) {
@@ -184,7 +201,9 @@ where
         let color = shaded(color_of(&curve.id), family.iter().position(|id| *id == curve.id).unwrap_or(0));
         let dots: Vec<Dot> = curve.points.iter().copied().filter(|dot| panel.scale.has(dot)).collect();
         let ends = |end: fn((f64, f64)) -> f64| {
-            dots.iter().filter_map(move |dot| Some((dot.span.map(end).filter(|x| *x > 0.0)?.clamp(xs.start, xs.end), dot.at.1)))
+            dots.iter().filter_map(move |dot| {
+                Some((dot.span.map(end).filter(|x| panel.scale.fits(*x))?.clamp(xs.start, xs.end), dot.at.1))
+            })
         };
         let band: Vec<(f64, f64)> =
             ends(|span| span.0).chain(ends(|span| span.1).collect::<Vec<_>>().into_iter().rev()).collect();
@@ -268,6 +287,34 @@ fn short(x: &f64) -> String {
     }
 }
 
+/// Numbers along an even axis, with the decimals that tell neighbours apart.
+fn even(axis: Range<f64>) -> impl Fn(&f64) -> String {
+    /// The most decimals that are written out.
+    const MOST: f64 = 6.0;
+    let span = axis.end - axis.start;
+    let step = match RangedCoordf64::from(axis).key_points(LABELS)[..] {
+        [a, b, ..] => b - a,
+        _ => span,
+    };
+    // Steps are 1, 2 or 5 times a power of ten, but for rounding.
+    let power = |x: f64| (x.log10() + 1e-6).floor();
+    let digits = |n: f64| floor_index(n.max(0.0), 15);
+    move |x| {
+        let (unit, name) = match x.abs() {
+            x if x < span * 1e-6 => return "0".to_owned(),
+            x if x >= 1e6 => (1e6, " M"),
+            x if x >= 1e3 => (1e3, " k"),
+            _ => (1.0, ""),
+        };
+        let decimals = -power(step / unit);
+        if decimals > MOST {
+            let digits = digits(power(x.abs()) - power(step));
+            return format!("{x:.digits$e}");
+        }
+        format!("{:.*}{name}", digits(decimals), x / unit)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -312,5 +359,35 @@ mod tests {
         let svg = svg_of(&[panel]).expect("drawn");
         assert!(usvg::Tree::from_str(&svg, &usvg::Options::default()).is_ok(), "well formed");
         assert!(!svg.contains("<node>") && svg.matches("<circle").count() >= 3);
+    }
+
+    #[test]
+    fn a_band_reaches_to_zero_and_below_on_even_axes() {
+        let drawn = |scale, span| {
+            let mut curve = Curve::of("bvh", [(1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]);
+            curve.points.iter_mut().for_each(|dot| dot.span = Some(span));
+            let axes = ["place", "SAH cost"];
+            let panel = Panel { title: "node".to_owned(), axes, curves: vec![curve], guide: None, labelled: false, scale };
+            svg_of(&[panel]).expect("drawn").lines().find(|line| line.contains("<polygon")).map(str::to_owned)
+        };
+        let corners = |line: Option<String>| line.map_or(0, |line| line.matches(',').count());
+        assert!(corners(drawn(Scale::Even, (0.0, 4.0))) > corners(drawn(Scale::Log, (0.0, 4.0))));
+        assert_eq!(corners(drawn(Scale::Even, (-1.0, 0.0))), corners(drawn(Scale::Even, (1.0, 4.0))));
+    }
+
+    #[test]
+    fn numbers_along_an_even_axis_are_told_apart() {
+        let labels = |axis: Range<f64>| -> Vec<String> {
+            let label = even(axis.clone());
+            RangedCoordf64::from(axis).key_points(LABELS).iter().map(label).collect()
+        };
+        for (from, to) in [(0.0, 1.0), (-0.5, 0.5), (0.0, 4e-4), (0.2001, 0.2006), (-3e-9, 2e-9), (0.0, 4e6), (990.0, 1010.0)] {
+            let all = labels(from..to);
+            assert!(all.len() > 2 && all.windows(2).all(|w| w[0] != w[1]), "{all:?}");
+        }
+        assert_eq!(labels(0.0..1.0)[..3], ["0", "0.1", "0.2"]);
+        assert_eq!(labels(0.0..4e-4)[1..3], ["0.00005", "0.00010"]);
+        assert_eq!(even(-1.0..1.0)(&1e-17), "0");
+        assert_eq!(even(0.0..1e7)(&2e6), "2 M");
     }
 }

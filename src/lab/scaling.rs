@@ -130,7 +130,9 @@ impl Sizes {
         let mut scene = scene::open(model, cx)?;
         let mut geometries = vec![whole(&scene)?];
         while scene.triangle_count() * 4 <= self.to {
-            scene = subdivide(&scene, cx).map_err(|reason| reason.of(model))?;
+            let finer = subdivide(&scene, cx).map_err(|reason| reason.of(model))?;
+            // What is wrong with the model stays wrong with all sizes of it.
+            scene = Scene { warnings: scene.warnings, ..finer };
             geometries.push(whole(&scene)?);
         }
         Ok(Grown { geometries, scene: Arc::new(scene) })
@@ -282,5 +284,19 @@ mod tests {
         let cut = counts(&Sizes { from: 1, to: 900, steps: 3 }, "builtin:soup?triangles=50");
         assert_eq!(cut, [50, 200, 800]);
         assert!(Sizes { from: 1, to: 9, steps: 2 }.of("builtin:nothing", &cx).is_err());
+    }
+
+    #[test]
+    fn what_is_said_of_a_model_is_said_of_the_finest_too() {
+        let cx = LoadCx::new(Cancel::new(), Progress::new(), Budget::unlimited(), Pool::new("load", 1));
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("one.stl");
+        // A triangle, and as much again behind it.
+        let corners: Vec<u8> = [0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes).concat();
+        std::fs::write(&path, [&[0u8; 80][..], &1u32.to_le_bytes(), &corners, &[0; 2 + 50]].concat()).expect("room on the disk");
+        let model = path.to_string_lossy().into_owned();
+        let warned = scene::open(&model, &cx).expect("a triangle").warnings;
+        let grown = Sizes { from: 1, to: 20, steps: 3 }.of(&model, &cx).expect("a triangle");
+        assert!(!warned.is_empty() && grown.geometries.len() == 3 && grown.scene.warnings == warned, "{warned:?}");
     }
 }

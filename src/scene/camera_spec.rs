@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use super::{Camera, Geometry, Projection, Scene};
+use crate::geometry::num::narrow;
 use glam::Vec3;
 
 /// A camera as the user writes it; what is not said comes from the scene.
@@ -20,11 +21,11 @@ impl CameraSpec {
         spec.map_or_else(|| scene.first_camera(geometry.world_bounds(), aspect), |spec| spec.in_scene(scene))
     }
 
-    /// A camera as it is written.
+    /// A camera as it is written, and read back to the bit.
     pub fn written(camera: &Camera) -> String {
         let point = |p: Vec3| format!("{},{},{}", p.x, p.y, p.z);
         let projection = match camera.projection {
-            Projection::Perspective { fov_y } => format!("fov {}", fov_y.to_degrees()),
+            Projection::Perspective { fov_y } => format!("fov {}", degrees(fov_y)),
             Projection::Orthographic { height } => format!("height {height}"),
         };
         format!("eye {} target {} up {} {projection}", point(camera.eye), point(camera.target), point(camera.up))
@@ -64,7 +65,18 @@ impl FromStr for CameraSpec {
 }
 
 fn number(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|x: &f32| x.is_finite()).ok_or_else(|| format!("'{text}' is not a number"))
+    text.parse().ok().filter(|x: &f32| x.is_finite()).ok_or_else(|| no_number(text))
+}
+
+fn no_number(text: &str) -> String {
+    format!("'{text}' is not a number")
+}
+
+/// An angle in degrees: in few digits if they say it, else in 64 bits.
+fn degrees(radians: f32) -> String {
+    let short = radians.to_degrees().to_string();
+    let says = short.parse().is_ok_and(|degrees: f64| narrow(degrees.to_radians()) == radians);
+    if says { short } else { f64::from(radians).to_degrees().to_string() }
 }
 
 fn point(text: &str) -> Result<Vec3, String> {
@@ -73,9 +85,10 @@ fn point(text: &str) -> Result<Vec3, String> {
 }
 
 fn perspective(text: &str) -> Result<Projection, String> {
-    let degrees = number(text)?;
-    let fits = degrees > 0.0 && degrees < 180.0;
-    fits.then_some(Projection::Perspective { fov_y: degrees.to_radians() })
+    // In 64 bits, so that it is rounded once.
+    let degrees = text.parse().ok().filter(|x: &f64| narrow(*x).is_finite()).ok_or_else(|| no_number(text))?;
+    let fits = narrow(degrees) > 0.0 && narrow(degrees) < 180.0;
+    fits.then_some(Projection::Perspective { fov_y: narrow(degrees.to_radians()) })
         .ok_or_else(|| format!("fov {text} is not between 0 and 180"))
 }
 
@@ -98,6 +111,22 @@ mod tests {
         assert_eq!((camera.up, camera.projection), (Vec3::Y, Projection::Orthographic { height: 2.0 }));
         let again: CameraSpec = CameraSpec::written(&camera).parse().expect("well formed");
         assert_eq!(again.in_scene(&Scene::default()), camera);
+    }
+
+    #[test]
+    fn every_written_angle_comes_back() {
+        let camera =
+            |fov_y| Camera { eye: Vec3::X, target: Vec3::ZERO, up: Vec3::Y, projection: Projection::Perspective { fov_y } };
+        let even = (1..=600u16).map(|i| f32::from(i) * 5.2e-3);
+        let whole = (1..180u8).map(|degrees| f32::from(degrees).to_radians());
+        let ends = [Camera::DEFAULT_FOV_Y, 1e-6, std::f32::consts::PI - 1e-6];
+        for camera in even.chain(whole).chain(ends).map(camera) {
+            let written = CameraSpec::written(&camera);
+            let again: CameraSpec = written.parse().expect("well formed");
+            assert_eq!(again.in_scene(&Scene::default()), camera, "{written}");
+        }
+        let short = CameraSpec::written(&camera(std::f32::consts::FRAC_PI_2));
+        assert!(short.ends_with(" fov 90"), "{short}");
     }
 
     #[test]

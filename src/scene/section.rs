@@ -47,6 +47,13 @@ impl FromStr for Section {
     }
 }
 
+impl std::fmt::Display for Section {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let side = if self.side == Side::Above { "-" } else { "" };
+        write!(f, "{side}{},{}", self.axis.name(), self.place)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,6 +76,9 @@ mod tests {
     fn a_section_is_read_from_text() {
         assert_eq!("x,0.5".parse(), Ok(Section::default()));
         assert_eq!("-z, 1".parse(), Ok(Section { axis: Axis::Z, place: 1.0, side: Side::Above }));
+        for text in ["x,0.5", "-z,1", "y,0.33"] {
+            assert_eq!(text.parse::<Section>().map(|section| section.to_string()), Ok(text.to_owned()));
+        }
         for text in ["", "x", "w,0.5", "x,1.5", "x,nan", "--x,0.5", "x,0.5,1"] {
             assert!(text.parse::<Section>().is_err(), "{text}");
         }

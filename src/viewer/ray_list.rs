@@ -9,7 +9,7 @@ use super::workers::Shared;
 use crate::accel::stats::SahWeights;
 use crate::geometry::Ray;
 use crate::job::Job;
-use crate::lab::ray_file::{RayFile, RayWork, dearest_first, work};
+use crate::lab::ray_file::{self, RayFile, RayWork, dearest_first, work};
 use crate::task::{Cancel, Cancelled, Charge, Progress};
 
 /// Endings of such files: lines of text, or NumPy arrays.
@@ -100,11 +100,10 @@ impl RayList {
 /// If the system grants no thread.
 pub fn read(shared: &Shared, path: PathBuf) -> std::io::Result<Reading> {
     let budget = shared.budget.clone();
-    Job::spawn("rays", shared.waker(), move |_, _| {
+    Job::spawn("rays", shared.waker(), move |cancel, _| {
         let wrong = |why: &dyn std::fmt::Display| format!("Can't open {}: {why}", path.display());
-        let bytes = std::fs::metadata(&path).map_err(|why| wrong(&why))?.len();
-        let _while_read = budget.charge(bytes.saturating_mul(2)).map_err(|why| wrong(&why))?;
-        let file = RayFile::parse(&std::fs::read(&path).map_err(|why| wrong(&why))?).map_err(|why| wrong(&why))?;
+        let (bytes, _while_read) = ray_file::read(&path, &budget, cancel).map_err(|why| wrong(&why))?;
+        let file = RayFile::parse(&bytes, cancel).map_err(|why| wrong(&why))?;
         let each = (size_of::<Ray>() + size_of::<RayWork>() + size_of::<u32>()) as u64;
         let memory = budget.charge(file.rays.len() as u64 * each).map_err(|why| wrong(&why))?;
         let name = path.file_name().map_or_else(|| path.to_string_lossy(), |name| name.to_string_lossy()).into_owned();

@@ -269,7 +269,7 @@ pub fn find_causes(
 }
 
 /// Bounding volumes around a cell, on their way; none if it holds nothing.
-pub type FittingVolumes = Job<Result<Option<lab::Fitting>, Cancelled>>;
+pub type FittingVolumes = Job<Result<Option<lab::Fitting>, lab::FitError>>;
 
 /// Starts comparing bounding volumes around a cell with rays of a view; the renderer is kept from running meanwhile.
 pub fn fit_volumes(
@@ -279,10 +279,10 @@ pub fn fit_volumes(
     cell: Cell,
     pause: Pauses,
 ) -> std::io::Result<FittingVolumes> {
-    let pool = shared.pool.clone();
+    let (pool, budget) = (shared.pool.clone(), shared.budget.clone());
     Job::spawn("volumes", shared.waker(), move |cancel, progress| {
         pause.wait();
-        lab::fit_volumes(&view, size_px, &cell, &pool, cancel, progress)
+        lab::fit_volumes(&view, size_px, &cell, &pool, (&budget, cancel, progress))
     })
 }
 

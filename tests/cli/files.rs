@@ -1,11 +1,13 @@
 //! `render`, `rays` and `trace`: what is in the files they leave.
 
 use std::fs;
+use std::io::Cursor;
 
 use crate::support::{Folder, Hits, bad, good, hits, json};
 use boxwood::accel::{BuildCx, Mode, registry};
 use boxwood::geometry::Ray;
 use boxwood::geometry::tri::TestKind;
+use boxwood::render::LinearPicture;
 use boxwood::scene::{self, Geometry, LoadCx};
 use boxwood::task::Cancel;
 use std::sync::Arc;
@@ -117,13 +119,22 @@ fn a_picture_has_its_size_and_shows_something() {
 #[test]
 fn a_heat_map_says_of_which_rays_it_is() {
     let folder = Folder::new();
-    let (model, out) = (folder.model(), folder.at("picture.png"));
+    let (model, out) = (folder.model(), folder.at("picture.exr"));
     let render =
         |mode, rays| ["render", &model, "-o", &out, "--mode", mode, "--size", "16x12", "--spp", "1", "--heat-rays", rays];
     assert!(good(&render("prims", "shadow")).contains("triangles tested by a shadow ray"));
     assert!(good(&render("stack", "bounce")).contains("entries on the stack at once, a bounce"));
+    let notes = || {
+        let picture = LinearPicture::read(Cursor::new(fs::read(&out).expect("there"))).expect("an EXR");
+        ["heat_rays", "section"].map(|name| picture.note(name).map(str::to_owned))
+    };
+    assert_eq!(notes(), [Some("bounce".to_owned()), None]);
+    good(&["render", &model, "-o", &out, "--size", "16x12", "--spp", "1", "--section", "-y,0.25"]);
+    assert_eq!(notes(), [None, Some("-y,0.25".to_owned())], "what it does not show is not noted");
     let said = bad(&render("nodes", "diffuse"), 2);
     assert!(said.contains("primary, shadow or bounce"), "{said}");
+    let said = bad(&render("shaded", "shadow"), 2);
+    assert!(said.contains("nodes, leaves, prims or stack"), "{said}");
 }
 
 #[cfg(unix)]

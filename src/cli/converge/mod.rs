@@ -152,7 +152,7 @@ impl Folder {
     }
 
     /// Puts a reference into it, to be used again.
-    fn keep_reference(&self, reference: &Reference, cancel: &Cancel) -> Result<(), Failure> {
+    pub fn keep_reference(&self, reference: &Reference, cancel: &Cancel) -> Result<(), Failure> {
         let picture = reference.to_picture();
         self.file(REFERENCE)?.write(cancel, |out| picture.write(out).map_err(std::io::Error::other))
     }

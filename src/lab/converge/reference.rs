@@ -4,6 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use serde::Serialize;
 
+use crate::geometry::HalfSpace;
 use crate::lab::rms_difference;
 use crate::render::light::Surroundings;
 use crate::render::sampler::{SamplerKind, Sampling};
@@ -105,19 +106,22 @@ impl Reference {
         seed == SEED || seed == SEED + 1
     }
 
-    /// Whether it will do for pictures of that job and size and at most so many samples.
+    /// Whether it will do for pictures of that job and size and at most so many samples. None does where triangles are hidden:
+    /// which they are is not hashed.
     pub fn suits(&self, job: &Job, size: [u32; 2], spp: u32) -> bool {
-        self.facts.size == size && self.facts.spp >= spp && self.facts.seed == SEED && self.facts.scene_hash == hash_of(job, size)
+        let enough = self.facts.size == size && self.facts.spp >= spp && self.facts.seed == SEED;
+        enough && job.visible.is_none() && self.facts.scene_hash == hash_of(job, size)
     }
 }
 
-/// Grows whenever light is followed otherwise, so that references of before are made anew.
-const VERSION: u32 = 1;
+/// Grows whenever light is followed otherwise, or more is hashed, so that references of before are made anew.
+const VERSION: u32 = 2;
 
-/// A number for everything that a path traced picture depends on but its samples.
+/// A number for everything that a path traced picture depends on but its samples; of hidden triangles, that there are some.
 pub fn hash_of(job: &Job, size: [u32; 2]) -> u64 {
     let mut hasher = DefaultHasher::new();
-    let Job { scene, accel, camera, transport, .. } = job;
+    // Samples, and what other modes show, are no part of it.
+    let Job { scene, accel, camera, mode: _, looks, sampling: _, transport, section, heat_rays: _, visible } = job;
     let geometry = accel.geometry();
     let floats = |hasher: &mut DefaultHasher, floats: &[f32]| floats.iter().for_each(|x| x.to_bits().hash(hasher));
     let mut known = vec![false; scene.meshes.len()];
@@ -138,13 +142,15 @@ pub fn hash_of(job: &Job, size: [u32; 2]) -> u64 {
         mesh.colors.iter().for_each(|color| floats(&mut hasher, color));
         mesh.material.hash(&mut hasher);
     }
-    for texture in (0..scene.images.len()).filter_map(|image| job.looks.textures().get(image)) {
+    for texture in (0..scene.images.len()).filter_map(|image| looks.textures().get(image)) {
         (texture.size(), texture.texels()).hash(&mut hasher);
     }
-    let surroundings = job.looks.surroundings();
+    let surroundings = looks.surroundings();
     if let Surroundings::Image { image, .. } = surroundings {
         image.texels().iter().for_each(|texel| floats(&mut hasher, texel));
     }
+    section.map(|HalfSpace { axis, at, side }| (axis, at.to_bits(), side)).hash(&mut hasher);
+    visible.is_some().hash(&mut hasher);
     // What has no bits of its own is told as text.
     let (materials, lights, around) = (&scene.materials, &scene.lights, surroundings.describe());
     format!("{VERSION} {materials:?} {lights:?} {:?} {camera:?} {transport:?} {size:?} {around}", scene.up).hash(&mut hasher);

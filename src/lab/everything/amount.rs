@@ -1,5 +1,6 @@
 //! How much of everything goes into a report.
 
+use crate::accel::params::ParamValues;
 use crate::accel::registry::{self, Entry};
 use crate::lab::{Enough, MeasureOptions};
 
@@ -104,6 +105,15 @@ impl Amount {
         ];
         flat.then_some(report).into_iter().chain(others).collect()
     }
+}
+
+/// The arguments of the command line that set what structures are built with otherwise than usual, each after a blank.
+pub fn settings(structures: &[(&'static Entry, ParamValues)]) -> String {
+    let of = |(entry, params): &(&'static Entry, ParamValues)| -> String {
+        let changed = params.iter().filter(|(param, value)| param.default() != *value);
+        changed.map(|(param, value)| format!(" --set {}.{}={value}", entry.id, param.id)).collect()
+    };
+    structures.iter().map(of).collect()
 }
 
 #[cfg(test)]

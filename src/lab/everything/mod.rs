@@ -5,7 +5,7 @@ mod amount;
 mod html;
 mod sections;
 
-pub use amount::Amount;
+pub use amount::{Amount, settings};
 
 use std::io::Cursor;
 use std::sync::Arc;
@@ -82,6 +82,9 @@ pub const PAGE: &str = "index.html";
 /// The name of the reference among them.
 pub const REFERENCE: &str = "reference.exr";
 
+/// Puts a reference where a report that is begun again finds it.
+pub type Keep<'a> = dyn FnMut(&Reference) -> Result<(), ReportError> + 'a;
+
 /// A file of a report: its name, and what is in it.
 pub type File = (&'static str, Vec<u8>);
 
@@ -133,13 +136,19 @@ fn form(what: &'static str, why: impl std::fmt::Display) -> ReportError {
 }
 
 /// Measures everything and makes the files of the report, the page last. `kept` is a reference of before, which is taken
-/// again if it will do; a new one is among the files. The context's progress has a phase for each section.
+/// again if it will do; a new one is given to `keep` as soon as it is made, and is among the files. The context's progress has
+/// a phase for each section.
 ///
 /// The caller sees to it that nothing else keeps the processors busy.
 ///
 /// # Errors
-/// Asked to stop, or [`ReportError`].
-pub fn report(of: &Subject, amount: &Amount, kept: Option<Reference>, cx: &BuildCx) -> Result<Vec<File>, ReportError> {
+/// Asked to stop, [`ReportError`], or what `keep` says.
+pub fn report(
+    of: &Subject,
+    amount: &Amount,
+    (kept, keep): (Option<Reference>, &mut Keep<'_>),
+    cx: &BuildCx,
+) -> Result<Vec<File>, ReportError> {
     let (rows, built) = structures(of, amount, cx)?;
     let first = built.first().ok_or(ReportError::NothingBuilt)?;
     let view = |mode| Job::new(Arc::clone(&of.scene), Arc::clone(&first.accel), of.camera, mode, Arc::clone(&of.looks));
@@ -150,6 +159,9 @@ pub fn report(of: &Subject, amount: &Amount, kept: Option<Reference>, cx: &Build
     let pictures = pictures(&view, amount, cx)?;
     let missing = report.structures.iter().filter_map(|row| Some([row.id.clone(), row.error.clone()?])).collect();
     let (convergence, made) = converge(&view(Mode::Path), &built, amount, (scene, missing, kept), cx)?;
+    if let Some(made) = &made {
+        keep(made)?;
+    }
     let tradeoffs = tradeoffs(&view(Mode::Shaded), &of.structures, amount, cx)?;
     let check = check(of, &built, amount, cx)?;
     let needs = of.looks.needs().findings(&of.scene);

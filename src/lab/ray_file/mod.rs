@@ -3,6 +3,10 @@
 
 pub mod npy;
 
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
 use rayon::prelude::*;
 
 use super::follow::from_text;
@@ -10,12 +14,65 @@ use crate::accel::probe::Counts;
 use crate::accel::stats::SahWeights;
 use crate::accel::{Accel, Mode};
 use crate::geometry::{Ray, num};
-use crate::task::{Cancel, Cancelled, Pool, Progress};
+use crate::task::{Budget, Cancel, Cancelled, Charge, OverBudget, Pool, Progress};
 
 /// Rays that are taken of one file.
 pub const MOST: usize = 1_000_000;
 /// Rays traced between two looks at whether to stop.
 const CHUNK: usize = 256;
+/// Lines or rows between two looks at whether to stop.
+const PER_CHECK: usize = 4096;
+/// Bytes read between two.
+const READ: u64 = 1 << 20;
+
+/// Why a file is of no use.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RayFileError {
+    /// Stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// It does not fit.
+    #[error(transparent)]
+    Memory(#[from] OverBudget),
+    /// It can't be read, or where it is wrong and why, in words for the user.
+    #[error("{0}")]
+    Wrong(String),
+}
+
+impl From<String> for RayFileError {
+    fn from(why: String) -> Self {
+        Self::Wrong(why)
+    }
+}
+
+impl From<std::io::Error> for RayFileError {
+    fn from(why: std::io::Error) -> Self {
+        Self::Wrong(why.to_string())
+    }
+}
+
+/// The bytes of a file, and what they and as many bytes of rays take. A pipe, which does not say how long it is, is read
+/// until it ends or the budget does; a file that grows meanwhile is cut at what it claimed.
+///
+/// # Errors
+/// Stopped, it does not fit, or it can't be read.
+pub fn read(path: &Path, budget: &Budget, cancel: &Cancel) -> Result<(Vec<u8>, Charge), RayFileError> {
+    let file = File::open(path)?;
+    let claimed = file.metadata()?.len();
+    let mut memory = budget.charge(claimed.saturating_mul(2))?;
+    let mut file = file.take(if claimed == 0 { u64::MAX } else { claimed });
+    let mut bytes = Vec::new();
+    loop {
+        cancel.check()?;
+        let more = file.by_ref().take(READ).read_to_end(&mut bytes)? as u64;
+        if more == 0 {
+            return Ok((bytes, memory));
+        }
+        if claimed == 0 {
+            memory.grow(more * 2)?;
+        }
+    }
+}
 
 /// The rays of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,14 +87,17 @@ impl RayFile {
     /// Reads the bytes of a file of either kind.
     ///
     /// # Errors
-    /// Where it is wrong and why, in words for the user.
-    pub fn parse(bytes: &[u8]) -> Result<Self, String> {
+    /// Stopped, or where it is wrong and why.
+    pub fn parse(bytes: &[u8], cancel: &Cancel) -> Result<Self, RayFileError> {
         if bytes.starts_with(npy::MAGIC) {
-            return Self::of_array(npy::parse(bytes)?);
+            return Ok(Self::of_array(npy::parse(bytes, MOST + 1, cancel)?)?);
         }
-        let text = std::str::from_utf8(bytes).map_err(|_| "it is neither text nor a NumPy array".to_owned())?;
         let mut file = Self::default();
-        for (i, line) in text.lines().enumerate() {
+        for (i, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
+            if i.is_multiple_of(PER_CHECK) {
+                cancel.check()?;
+            }
+            let line = std::str::from_utf8(line).map_err(|_| "it is neither text nor a NumPy array".to_owned())?;
             let said = line.split('#').next().unwrap_or_default().trim();
             if said.is_empty() {
                 continue;
@@ -49,7 +109,7 @@ impl RayFile {
             }
             file.rays.push(ray);
         }
-        if file.rays.is_empty() { Err("there is no ray in it".to_owned()) } else { Ok(file) }
+        if file.rays.is_empty() { Err("there is no ray in it".to_owned().into()) } else { Ok(file) }
     }
 
     fn of_array(mut rays: Vec<Ray>) -> Result<Self, String> {
@@ -127,10 +187,40 @@ mod tests {
     use glam::Vec3;
     use std::sync::Arc;
 
+    fn parse(bytes: &[u8]) -> Result<RayFile, String> {
+        RayFile::parse(bytes, &Cancel::new()).map_err(|why| why.to_string())
+    }
+
+    #[test]
+    fn reading_stops_when_asked_and_ends_with_the_budget() {
+        let cancel = Cancel::new();
+        cancel.cancel();
+        let array = b"\x93NUMPY\x01\x00\x00\x00";
+        assert_eq!(RayFile::parse(b"0 0 1 0 0 -1\n", &cancel), Err(Cancelled.into()));
+        assert!(RayFile::parse(array, &cancel).is_err());
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("many.rays");
+        std::fs::write(&path, "0 0 1 0 0 -1\n".repeat(200_000)).expect("room on the disk");
+        let budget = Budget::new(1 << 30);
+        let (bytes, memory) = read(&path, &budget, &Cancel::new()).expect("readable");
+        assert_eq!((bytes.len(), memory.bytes()), (13 * 200_000, 2 * 13 * 200_000));
+        assert_eq!(parse(&bytes).map(|file| file.rays.len()), Ok(200_000));
+        assert_eq!(read(&path, &budget, &cancel).err(), Some(Cancelled.into()));
+        assert!(matches!(read(&path, &Budget::new(1 << 20), &Cancel::new()), Err(RayFileError::Memory(_))));
+        assert!(matches!(read(&folder.path().join("none.rays"), &budget, &Cancel::new()), Err(RayFileError::Wrong(_))));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_never_ends_is_read_until_the_budget_does() {
+        let endless = read(Path::new("/dev/zero"), &Budget::new(16 << 20), &Cancel::new());
+        assert!(matches!(endless, Err(RayFileError::Memory(_))));
+    }
+
     #[test]
     fn lines_are_rays_and_what_is_wrong_is_told_by_its_line() {
         let text = "# x y z  dx dy dz\n\n0 0 1  0 0 -1 # straight down\n0,0,1, 0,0,-1, 0.5, 2\n";
-        let file = RayFile::parse(text.as_bytes()).expect("rays");
+        let file = parse(text.as_bytes()).expect("rays");
         assert_eq!((file.rays.len(), file.rays[0].tmax, file.rays[1].tmin, file.more), (2, f32::INFINITY, 0.5, false));
         for (text, part) in [
             ("0 0 1 0 0 -1\n# fine\n0 0 1 0 zero -1\n", "line 3: 'zero' is no number"),
@@ -138,10 +228,10 @@ mod tests {
             ("# nothing\n", "there is no ray in it"),
             ("", "there is no ray in it"),
         ] {
-            assert!(RayFile::parse(text.as_bytes()).is_err_and(|why| why.contains(part)), "{part}");
+            assert!(parse(text.as_bytes()).is_err_and(|why| why.contains(part)), "{part}");
         }
-        assert!(RayFile::parse(&[0xff, 0xfe, 0]).is_err_and(|why| why.contains("neither text")));
-        assert!(RayFile::parse(npy::MAGIC).is_err_and(|why| why.contains("cut short")));
+        assert!(parse(&[0xff, 0xfe, 0]).is_err_and(|why| why.contains("neither text")));
+        assert!(parse(npy::MAGIC).is_err_and(|why| why.contains("cut short")));
     }
 
     #[test]
@@ -167,7 +257,7 @@ mod tests {
         };
         let rays: Vec<Ray> = (0..600).map(ray).collect();
         let text: String = rays.iter().map(|ray| format!("{}\n", to_text(ray))).collect();
-        assert_eq!(RayFile::parse(text.as_bytes()).map(|file| file.rays), Ok(rays.clone()));
+        assert_eq!(parse(text.as_bytes()).map(|file| file.rays), Ok(rays.clone()));
         let (pool, cancel) = (Pool::new("rays", 2), Cancel::new());
         let work = work(accel.as_ref(), &rays, &pool, &cancel, &Progress::new()).expect("not cancelled");
         let order = dearest_first(&work, SahWeights::default());

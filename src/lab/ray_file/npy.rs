@@ -3,31 +3,40 @@
 //! The header is read here rather than by a crate: the file may come from anywhere, and neither its claimed shape nor its
 //! nesting may cost memory or stack.
 
+use super::{PER_CHECK, RayFileError};
 use crate::geometry::Ray;
 use crate::geometry::num::narrow;
+use crate::task::Cancel;
 
 /// Numbers in a row.
 const COLUMNS: usize = 8;
 /// What such files begin with.
 pub const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// The rays in the bytes of a file.
+/// The rays in the bytes of a file, so many at most.
 ///
 /// # Errors
-/// What is wrong with them, in words for the user.
-pub fn parse(bytes: &[u8]) -> Result<Vec<Ray>, String> {
+/// Stopped, or what is wrong with them.
+pub fn parse(bytes: &[u8], most: usize, cancel: &Cancel) -> Result<Vec<Ray>, RayFileError> {
     let (header, data) = split(bytes)?;
     let width = header.number.width();
     let row = COLUMNS * width;
     let enough = header.rows.checked_mul(row as u64).is_some_and(|need| need == data.len() as u64);
     if !enough {
-        return Err(format!("its header says {} rays of {row} bytes, but {} bytes follow", header.rows, data.len()));
+        return Err(format!("its header says {} rays of {row} bytes, but {} bytes follow", header.rows, data.len()).into());
     }
     let rows = data.len() / row;
     let number = |i: usize| header.number.read(&data[i * width..(i + 1) * width]);
     let at = |row: usize, k: usize| number(if header.by_column { k * rows + row } else { row * COLUMNS + k });
     let ray = |row: usize| bytemuck::cast::<[f32; COLUMNS], Ray>(std::array::from_fn(|k| at(row, k)));
-    Ok((0..rows).map(ray).collect())
+    let mut rays = Vec::with_capacity(rows.min(most));
+    for i in 0..rows.min(most) {
+        if i.is_multiple_of(PER_CHECK) {
+            cancel.check()?;
+        }
+        rays.push(ray(i));
+    }
+    Ok(rays)
 }
 
 /// What a header says.
@@ -134,6 +143,10 @@ mod tests {
         [&b"\x93NUMPY\x01\x00"[..], &length, text.as_bytes(), data].concat()
     }
 
+    fn parse(bytes: &[u8]) -> Result<Vec<Ray>, String> {
+        super::parse(bytes, usize::MAX, &Cancel::new()).map_err(|why| why.to_string())
+    }
+
     #[test]
     fn other_widths_and_orders_are_read() {
         assert_eq!(parse(&file("<f4", "False", "(0, 8)", &[])), Ok(Vec::new()));
@@ -143,6 +156,11 @@ mod tests {
         assert_eq!(parse(&file(">f8", "False", "(5, 8)", &wide)), Ok(rays()));
         let columns: Vec<u8> = (0..COLUMNS).flat_map(|k| rows.iter().flat_map(move |row| row[k].to_le_bytes())).collect();
         assert_eq!(parse(&file("<f4", "True", "(5, 8)", &columns)), Ok(rays()));
+        let cancel = Cancel::new();
+        let three = super::parse(&file("<f4", "True", "(5, 8)", &columns), 3, &cancel);
+        assert_eq!(three.as_deref(), Ok(&rays()[..3]), "no more than asked for");
+        cancel.cancel();
+        assert!(super::parse(&file("<f4", "True", "(5, 8)", &columns), 3, &cancel).is_err());
     }
 
     #[test]

@@ -67,6 +67,9 @@ fn tiles(ui: &mut Ui, state: &State, commands: &mut Commands) {
             if old {
                 empty(ui, "Timed of an earlier view.");
             }
+            if let Some(shortfall) = times.shortfall() {
+                empty(ui, &shortfall);
+            }
             let (mean, rays) = (format::number(times.mean_ns()), format::count(times.rays));
             fact(ui, "Mean", format!("{mean} ns a ray"), "Of all rays of the view, the least time of each tile.");
             fact(ui, "All tiles", format!("{} for {rays} rays", format::duration(times.secs)), "The least times of all tiles.");
@@ -76,7 +79,7 @@ fn tiles(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if old || state.tiles.found.is_none() {
         let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
         let help = format!(
-            "Time the rays of each tile of {TILE} by {TILE} pixels on one thread, the least of {REPEATS} times, {}. Rendering rests meanwhile.",
+            "Time the rays of each tile of {TILE} by {TILE} pixels on one thread, the least of {REPEATS} times or as many as some seconds allow, {}. Rendering rests meanwhile.",
             TERMS.label()
         );
         if ui.add_enabled(possible, Button::new("Time the tiles")).on_hover_text(help).clicked() {

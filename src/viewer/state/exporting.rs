@@ -144,15 +144,8 @@ impl State {
         let (entries, test) = (amount.entries(), self.settings.common_test());
         let ids: Vec<&str> = entries.iter().map(|entry| entry.id).collect();
         let structures: Vec<_> = entries.iter().map(|entry| (*entry, self.settings.params_of(entry))).collect();
-        let mut sets: Vec<String> = Vec::new();
-        for (param, value) in structures.iter().flat_map(|(_, params)| params.iter()).filter(|(p, v)| p.default() != *v) {
-            let set = format!(" --set {}={value}", param.id);
-            if !sets.contains(&set) {
-                sets.push(set);
-            }
-        }
         let camera = CameraSpec::written(&self.camera);
-        let view = format!(" --camera \"{camera}\" --test {}{}", test.id(), sets.concat());
+        let view = format!(" --camera \"{camera}\" --test {}{}", test.id(), everything::settings(&structures));
         let flat = model.geometry.placed().is_none();
         let subject = Subject {
             scene: Arc::clone(&model.scene),
@@ -180,7 +173,7 @@ fn report(
     let Ok(looks) = Looks::decode(&subject.scene, Detail::Light, &cx) else { return Ok(None) };
     subject.looks = Arc::new(looks);
     let cx = BuildCx::new(cancel.clone(), progress.clone(), pool, budget);
-    let made = match everything::report(&subject, amount, None, &cx) {
+    let made = match everything::report(&subject, amount, (None, &mut |_| Ok(())), &cx) {
         Ok(made) => made,
         Err(ReportError::Cancelled(_)) => return Ok(None),
         Err(why) => return Err(fail(&why)),

@@ -17,10 +17,10 @@ impl State {
         self.shown.as_ref().is_some_and(|b| b.key.entry.family != Family::Brute && film::is_possible(b.accel.as_ref()))
     }
 
-    /// Whether it can be made now: its cells are listed, and nothing is measured.
+    /// Whether it can be made now: all its cells are listed, and nothing is measured.
     pub fn can_make_film(&self) -> bool {
         let free = self.filming.making.is_none() && self.filming.film.is_none() && !self.is_measuring();
-        free && self.has_film() && self.tree.outline.is_some()
+        free && self.has_film() && self.tree.outline.as_ref().is_some_and(|outline| !outline.is_cut())
     }
 
     /// Starts making it.

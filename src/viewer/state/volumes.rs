@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::State;
 use crate::accel::{Cell, CellId};
 use crate::job::Outcome;
-use crate::lab::{Fitting, can_fit};
+use crate::lab::{FitError, Fitting, can_fit};
 use crate::render::{self, Mode};
 use crate::scene::Camera;
 use crate::viewer::gpu::BoxInstance;
@@ -75,7 +75,10 @@ impl State {
                 self.light();
             }
             Outcome::Done(Ok(None)) => self.fits.note = Some("It has no triangles to bound."),
-            Outcome::Done(Err(_)) => {}
+            Outcome::Done(Err(FitError::Cancelled(_))) => {}
+            Outcome::Done(Err(why)) => {
+                self.fail(format!("Can't compare volumes: {}", super::finished::sentence(&why.to_string())));
+            }
             Outcome::Died => self.fail("Can't compare volumes: fitting them failed. Please report this.".to_owned()),
         }
         self.fits.running = None;
