@@ -318,3 +318,40 @@ fn check(of: &Subject, built: &[Runner], amount: &Amount, cx: &BuildCx) -> Resul
 fn said_of(mesh: &MeshCheck) -> Vec<(bool, String)> {
     mesh.findings().into_iter().map(|finding| (finding.grave, format!("{} {}", finding.what, finding.remedy))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accel::registry;
+    use crate::scene::texture::Textures;
+    use crate::scene::{LoadCx, open};
+
+    #[test]
+    fn a_reference_is_kept_before_what_comes_after_it() {
+        let load = LoadCx::unattended();
+        let scene = open("builtin:cornell-box", &load).expect("built in");
+        let geometry = Arc::new(Geometry::new(&scene, &load).expect("fits"));
+        let entry = registry::find("bvh").expect("registered");
+        let of = Subject {
+            looks: Arc::new(Looks::new(&scene, Textures::none())),
+            camera: scene.first_camera(geometry.world_bounds(), 1.0),
+            scene: Arc::new(scene),
+            geometry,
+            structures: vec![(entry, entry.defaults())],
+            test: TestKind::Watertight,
+            commands: Vec::new(),
+        };
+        let small = [8, 8];
+        let sizes = Amount { picture: small, rays: small, converge: small, tradeoffs: small, check: small, ..Amount::of(true) };
+        let amount = Amount { spp: 1, converge_spp: 1, ..sizes };
+        let (cx, mut kept) = (BuildCx::unattended(1), None);
+        let mut keep = |reference: &Reference| {
+            kept = Some(reference.facts.size);
+            cx.cancel.cancel();
+            Ok(())
+        };
+        let made = report(&of, &amount, (None, &mut keep), &cx);
+        assert!(matches!(made, Err(ReportError::Cancelled(_))), "{:?}", made.err());
+        assert_eq!(kept, Some(small));
+    }
+}
