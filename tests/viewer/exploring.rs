@@ -10,8 +10,11 @@ use crate::window::{Setup, Window};
 
 /// A window in the Structure workspace; that took one click.
 fn open(model: &str) -> Window {
-    // As tall as what is said of a node: scrolling is another thing.
-    let mut setup = Setup { size: vec2(1280.0, 1200.0), ..Setup::default() };
+    open_as_tall_as(model, 800.0)
+}
+
+fn open_as_tall_as(model: &str, height: f32) -> Window {
+    let mut setup = Setup { size: vec2(1280.0, height), ..Setup::default() };
     setup.options.model = Some(model.to_owned());
     let mut w = Window::new(setup).settled();
     w.button("Structure workspace");
@@ -184,7 +187,8 @@ fn the_outcome_can_be_hidden_until_asked() {
 
 #[test]
 fn boxes_are_of_the_selected_cell_alone_and_coloured_by_what_they_cost() {
-    let mut w = open("builtin:teapot?triangles=1000");
+    // As tall as what is said of a node: scrolling is another thing.
+    let mut w = open_as_tall_as("builtin:teapot?triangles=1000", 1200.0);
     w.button(Rank::Overlap.name());
     w.settle();
     w.button("Child");

@@ -169,7 +169,7 @@ fn a_report_that_is_stopped_leaves_nothing() {
     w.button("Export report…");
     w.until("its start", |s| s.exports.report.is_some());
     w.step();
-    assert!(w.state().is_measuring() && w.says("Report"));
+    assert!(w.state().is_measuring() && w.says("Making the report"));
     w.button("Cancel the report");
     w.settle();
     assert!(w.state().exports.report.is_none() && w.state().exports.said.is_none() && w.state().error.is_none());

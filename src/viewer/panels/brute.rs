@@ -54,7 +54,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
 fn typed(ui: &mut Ui, [width, height]: [u32; 2], commands: &mut Commands) {
     let id = ui.scope_id().with("typed rectangle");
     let middle = [width / 4, height / 4, width / 2, height / 2];
-    let [mut x, mut y, mut across, mut down]: [u32; 4] = ui.data(|d| d.get_temp(id)).unwrap_or(middle);
+    // Until something is typed it is the middle of the view, however large that is.
+    let before: [u32; 4] = ui.data(|d| d.get_temp(id)).unwrap_or(middle);
+    let [mut x, mut y, mut across, mut down] = before;
     ui.horizontal_wrapped(|ui| {
         let mut field = |value: &mut u32, (least, most): (u32, u32), prefix: &str, name: &str, help: &str| {
             // What was typed for a larger view ends with this one.
@@ -71,7 +73,10 @@ fn typed(ui: &mut Ui, [width, height]: [u32; 2], commands: &mut Commands) {
             commands.push(Command::CheckByBrute(Some(PixelRect { at: [x, y], size: [across, down] })));
         }
     });
-    ui.data_mut(|d| d.insert_temp(id, [x, y, across, down]));
+    let now = [x, y, across, down];
+    if now != before {
+        ui.data_mut(|d| d.insert_temp(id, now));
+    }
 }
 
 /// How far it is, and how long all would take.

@@ -93,7 +93,7 @@ const fn help(order: Order) -> &'static str {
 fn title(ui: &mut Ui, film: &Film, commands: &mut Commands) -> bool {
     let row = ui.horizontal_wrapped(|ui| {
         label(ui);
-        ui.label("Reconstructed order").on_hover_text(help(film.order()));
+        ui.add(Label::new("Reconstructed order").extend()).on_hover_text(help(film.order()));
         if ui.button("Close").on_hover_text("Put the film away.").accessible_name("Close the film").clicked() {
             commands.push(Command::CloseFilm);
         }
