@@ -133,7 +133,8 @@ fn what_is_walked_over_is_one_step_to_take_back() {
 
 #[test]
 fn a_plane_is_tried_by_hand_by_keys_and_by_rule() {
-    let mut w = open("builtin:lecture");
+    // As tall as what is said of a node: scrolling is another thing.
+    let mut w = open_as_tall_as("builtin:lecture", 1200.0);
     w.button(Rank::Overlap.name());
     w.settle();
     w.button("Parent");
@@ -187,8 +188,7 @@ fn the_outcome_can_be_hidden_until_asked() {
 
 #[test]
 fn boxes_are_of_the_selected_cell_alone_and_coloured_by_what_they_cost() {
-    // As tall as what is said of a node: scrolling is another thing.
-    let mut w = open_as_tall_as("builtin:teapot?triangles=1000", 1200.0);
+    let mut w = open("builtin:teapot?triangles=1000");
     w.button(Rank::Overlap.name());
     w.settle();
     w.button("Child");
