@@ -133,7 +133,9 @@ fn watched(job: &Job) -> Vec<[f32; 4]> {
             Mode::Stack => counts.stack,
             _ => counts.prims,
         };
-        [amount as f32, 0.0, 0.0, if !primary || hit.is_some() || amount > 0 { 1.0 } else { 0.0 }]
+        // Where nothing ever waits a ray may still have entered nodes.
+        let works = hit.is_some() || amount > 0 || (job.mode == Mode::Stack && counts.nodes > 0);
+        [amount as f32, 0.0, 0.0, if !primary || works { 1.0 } else { 0.0 }]
     };
     pixels.map(of_pixel).collect()
 }
