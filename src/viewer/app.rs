@@ -224,6 +224,8 @@ impl App {
             Workspace::Structure if self.state.filming.film.is_some() => Some(("film", theme::FILM_PANEL, panels::film::show)),
             Workspace::Structure => self.state.has_film().then_some(("film offer", theme::FILM_OFFER, panels::film::show)),
             Workspace::Ray => Some(("steps", theme::STEPS_PANEL, panels::steps::show)),
+            // Compared pictures get the room that curves of one would take.
+            Workspace::Compare if self.state.is_comparing() => Some(("beside", theme::LOW_PANEL, panels::errors::show)),
             Workspace::Compare => Some(("errors", theme::ERROR_PANEL, panels::errors::show)),
             Workspace::Check => Some(("matrix", theme::MATRIX_PANEL, panels::stability::show)),
         };

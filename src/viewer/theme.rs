@@ -37,9 +37,11 @@ pub const LEFT_PANEL: f32 = 232.0;
 pub const RIGHT_PANEL: f32 = 280.0;
 /// The height of the timings below the viewport.
 pub const BOTTOM_PANEL: f32 = 184.0;
-/// The height of the matrix below the viewport.
+/// The height of the plots of errors below the viewport.
 pub const ERROR_PANEL: f32 = 280.0;
-/// Of the stability lab.
+/// The same while pictures are compared, at first.
+pub const LOW_PANEL: f32 = 110.0;
+/// The height of the stability lab's matrix there.
 pub const MATRIX_PANEL: f32 = 320.0;
 /// The width of the names of cases beside the matrix.
 pub const CASE_NAME: f32 = 28.0 * GRID;
