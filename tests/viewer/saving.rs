@@ -45,6 +45,12 @@ fn nothing_is_lost_between_saving_and_opening() {
     w.settle();
     let plot = w.harness.get_by_role_and_label(Role::Image, "SAH cost over candidate planes").rect();
     w.drag(plot.center(), vec2(20.0, 0.0), PointerButton::Primary, Modifiers::NONE);
+    // Compare, and back to the tree.
+    w.key(Modifiers::NONE, Key::F4);
+    w.choose("No second", "and Grid");
+    w.until("two pictures", boxwood::viewer::state::State::is_split);
+    w.key(Modifiers::NONE, Key::F2);
+    w.settle();
     w.key(Modifiers::COMMAND, Key::D);
     w.key(Modifiers::COMMAND, Key::S);
     w.until("the file", |_| path.exists());
@@ -65,6 +71,7 @@ fn nothing_is_lost_between_saving_and_opening() {
     assert_eq!((after.settings.overlay, after.settings.workspace), (settings.overlay, Workspace::Structure));
     assert_eq!((after.rays.kind, after.rays.beside.as_slice()), (RayKind::Diffuse, &["bvh"][..]));
     assert_eq!(after.bookmarks.len(), bookmarks);
+    assert!(after.settings.panes == settings.panes && after.settings.panes.others.len() == 1);
     assert!(after.tree.tried.is_some_and(|(axis, place)| axis == tried.0 && (place - tried.1).abs() < 1e-9));
     assert!(after.overlay.as_ref().is_some_and(|overlay| overlay.tried.is_some()));
     assert!(after.model.as_ref().is_some_and(|model| model.scene.name == "builtin:teapot?triangles=1000"));
