@@ -126,10 +126,10 @@ fn diagonals<const FIRST: usize, const N: usize>(
     Ok(slabs)
 }
 
-/// The part of a box behind some planes, which are relative to `centre`. What lies within a millionth of its size of a plane
-/// is on it: offsets of 32 bits let planes that have a corner in common miss it by about as much.
+/// The part of a box behind some planes, which are relative to `centre`. They are taken as they are, offsets of 32 bits and all: two
+/// faces of a hull may meet at an angle of 1e-4, where an edge moves ten thousand times as far as a plane that is called met early.
 pub fn behind(bounds: &Aabb, planes: &[Plane], centre: Vec3) -> Form {
-    const SLACK: f64 = 1e-6;
+    const SLACK: f64 = 1e-12;
     let slack = SLACK * f64::from(bounds.size().max_element());
     let mut form = Polyhedron::of_box(bounds);
     for plane in planes {
