@@ -125,20 +125,12 @@ fn amounts_stay_while_their_range_changes() {
     let expected = render(&job, (80, 60), &Until::samples(1), &Pool::new("test", 1), &Cancel::new(), &Progress::new());
     let expected: Vec<f32> = expected.expect("not cancelled").film.means().map(|m| m[0] / m[3]).collect();
     let request = Request { job, width: 80, height: 60, max_samples: 1, range: None, tone: Tone::default(), keep: None };
-    let wait = |number: u64| -> Arc<Picture> {
-        let start = Instant::now();
-        loop {
-            assert!(start.elapsed() < Duration::from_secs(30), "no picture came");
-            match renderer.picture().filter(|p| p.request == number && p.progress.done) {
-                Some(picture) => return picture,
-                None => std::thread::sleep(Duration::from_millis(2)),
-            }
-        }
-    };
+    let wait = |number: u64| finished(&renderer, number);
     let fitted = wait(renderer.request(request.clone()));
     let range = Range { min: 3.0, max: 9.0 };
     let ranged = wait(renderer.request(Request { range: Some(range), ..request.clone() }));
     assert!(ranged.range == range && fitted.range.min == 0.0 && fitted.rgba != ranged.rgba);
+    assert!(fitted.range == fitted.suits && ranged.suits == fitted.suits, "the range that suits is told with another");
     let same = |values: &[f32]| values.iter().zip(&expected).all(|(a, b)| a == b || a.is_nan() && b.is_nan());
     for picture in [&fitted, &ranged] {
         let amounts = picture.amounts.as_ref().expect("a heat map");
@@ -206,22 +198,26 @@ fn the_renderer_refines_rests_and_pauses() {
     assert!(second > first);
 }
 
+/// The last picture that answers a request.
+#[track_caller]
+fn finished(renderer: &Renderer, number: u64) -> Arc<Picture> {
+    let start = Instant::now();
+    loop {
+        assert!(start.elapsed() < Duration::from_secs(30), "no picture came");
+        match renderer.picture().filter(|p| p.request == number && p.progress.done) {
+            Some(picture) => return picture,
+            None => std::thread::sleep(Duration::from_millis(2)),
+        }
+    }
+}
+
 #[test]
 fn samples_are_kept_when_only_what_becomes_of_them_changes() {
     let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
     let budget = Budget::of_mib(64);
     let (job, keep) = (job(&soup(400, 0.3, 7), "bvh", Mode::Path), Some(budget.clone()));
     let request = Request { job, width: 80, height: 60, max_samples: 9, range: None, tone: Tone::default(), keep };
-    let wait = |number: u64| {
-        let start = Instant::now();
-        loop {
-            assert!(start.elapsed() < Duration::from_secs(30), "no picture came");
-            match renderer.picture().filter(|p| p.request == number && p.progress.done) {
-                Some(picture) => return picture,
-                None => std::thread::sleep(Duration::from_millis(2)),
-            }
-        }
-    };
+    let wait = |number: u64| finished(&renderer, number);
     let first = wait(renderer.request(request.clone()));
     let samples: Vec<u32> = first.shots.iter().map(|shot| shot.samples).collect();
     assert_eq!(samples, [1, 2, 4, 8]);
@@ -239,33 +235,6 @@ fn samples_are_kept_when_only_what_becomes_of_them_changes() {
     let other = wait(renderer.request(elsewhere));
     assert!(!Arc::ptr_eq(&first.shots[0], &other.shots[0]));
     assert!(other.shots.iter().all(|shot| shot.light.is_none()), "what does not fit the budget is not kept");
-}
-
-#[test]
-fn amounts_come_with_the_picture_if_asked_for_and_keep_the_range_that_suits() {
-    let renderer = Renderer::new(Pool::new("test", 1), || {}).expect("a thread");
-    let job = job(&soup(400, 0.3, 7), "bvh", Mode::Nodes);
-    let plain = Request { job, width: 64, height: 48, max_samples: 1, range: None, tone: Tone::default(), keep: None };
-    let wait = |number: u64| {
-        let start = Instant::now();
-        loop {
-            assert!(start.elapsed() < Duration::from_secs(30), "no picture came");
-            match renderer.picture().filter(|p| p.request == number && p.progress.done) {
-                Some(picture) => return picture,
-                None => std::thread::sleep(Duration::from_millis(2)),
-            }
-        }
-    };
-    let first = wait(renderer.request(plain.clone()));
-    assert!(first.range == first.suits);
-    // Without another sample: the same samples, mapped otherwise.
-    let fixed = Range { min: 0.0, max: 1000.0 };
-    let second = wait(renderer.request(Request { range: Some(fixed), ..plain }));
-    assert!(second.range == fixed && second.suits == first.suits && second.rgba != first.rgba);
-    let amounts = &second.amounts.as_ref().expect("a heat map has them").values;
-    assert_eq!(amounts.len(), 64 * 48);
-    let most = amounts.iter().copied().fold(0.0, f32::max);
-    assert!(most >= first.suits.max - 1.0 && amounts.iter().all(|x| x.is_nan() || x.fract() == 0.0), "{most}");
 }
 
 #[test]

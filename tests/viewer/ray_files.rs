@@ -37,17 +37,22 @@ fn text(rays: &[Ray]) -> String {
     format!("# straight down\n{lines}")
 }
 
-#[test]
-fn a_file_is_listed_by_cost_and_its_rays_are_followed() {
+/// A window in the Ray workspace with a file of rays that were traced, and the rays.
+fn listed() -> (Window, Files, Vec<Ray>) {
     let files = Files::new();
-    let path = files.missing("down.rays");
-    let mut w = open(Some(path.clone()));
+    let mut w = open(Some(files.missing("down.rays")));
     let rays = rays(&w);
     files.write("down.rays", text(&rays));
     w.button("Ray workspace");
     w.button("Open rays…");
     w.until("the list", |s| s.ray_list.traced.is_some());
     w.settle();
+    (w, files, rays)
+}
+
+#[test]
+fn a_file_is_listed_by_cost_and_its_rays_are_followed() {
+    let (mut w, _files, rays) = listed();
     let traced = w.state().ray_list.traced.as_ref().expect("traced");
     let weights = SahWeights::of(&traced.of.params);
     let costs: Vec<f64> = traced.order.iter().map(|i| traced.work[*i as usize].cost(weights)).collect();
@@ -79,20 +84,12 @@ fn a_file_is_listed_by_cost_and_its_rays_are_followed() {
 
 #[test]
 fn the_list_is_saved_the_dearest_ray_first() {
-    let files = Files::new();
-    let path = files.missing("down.rays");
-    let mut w = open(Some(path.clone()));
-    let rays = rays(&w);
-    files.write("down.rays", text(&rays));
-    w.button("Ray workspace");
-    w.button("Open rays…");
-    w.until("the list", |s| s.ray_list.traced.is_some());
-    w.settle();
+    let (mut w, files, rays) = listed();
     w.button("Save rays");
     w.button("Table as CSV…");
     w.until("a file", |s| s.exports.said.is_some() || s.error.is_some());
     assert_eq!(w.state().error, None);
-    let saved = std::fs::read_to_string(path.with_file_name("down.rays.csv")).expect("with its ending");
+    let saved = std::fs::read_to_string(files.missing("down.rays.csv")).expect("with its ending");
     let lines: Vec<&str> = saved.lines().collect();
     assert_eq!(lines.len(), 1 + rays.len());
     let (number, _, work) = w.state().ray_list.row(0).expect("a row");
@@ -118,14 +115,7 @@ fn a_file_is_dropped_and_what_is_wrong_with_one_is_told() {
 
 #[test]
 fn rows_are_one_stop_of_tab() {
-    let files = Files::new();
-    let path = files.missing("down.rays");
-    let mut w = open(Some(path));
-    files.write("down.rays", text(&rays(&w)));
-    w.button("Ray workspace");
-    w.button("Open rays…");
-    w.until("the list", |s| s.ray_list.traced.is_some());
-    w.settle();
+    let (mut w, _files, _) = listed();
     w.harness.get_by_role_and_label(Role::List, "Rays of the file").focus();
     w.step();
     w.key(Modifiers::NONE, Key::ArrowDown);
