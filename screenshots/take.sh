@@ -19,7 +19,6 @@ take() {
     "$boxwood" "$@" --dark --size 1280x800 --screenshot "screenshots/$name.png"
 }
 
-take lecture builtin:lecture --structure bvh --depth 2 --spp 16
 take grid builtin:teapot --structure grid --spp 4
 take check builtin:teapot --spp 64 --check
 take errors builtin:cornell-box --errors image --spp 4 --no-overlay

@@ -158,13 +158,19 @@ impl ParamValues {
         self.params.iter().zip(self.values.iter().copied())
     }
 
+    /// Those that differ from their defaults.
+    pub fn changed(&self) -> impl Iterator<Item = (&'static Param, Value)> + '_ {
+        self.iter().filter(|(param, value)| param.default() != *value)
+    }
+
     /// Every parameter with its value, to be changed in place. Values of another kind are ignored
     /// when read, so a caller keeps to the kind of the parameter.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = (&'static Param, &mut Value)> + '_ {
         self.params.iter().zip(self.values.iter_mut())
     }
 
-    fn get(&self, id: &str) -> Option<Value> {
+    /// The value of that id, if there is such a parameter.
+    pub fn get(&self, id: &str) -> Option<Value> {
         self.params.iter().position(|p| p.id == id).map(|i| self.values[i])
     }
 

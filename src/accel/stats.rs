@@ -27,10 +27,7 @@ impl SahWeights {
     /// The weights that a structure was built with, so that its SAH cost is stated in them; 1 where
     /// it has none.
     pub fn of(params: &ParamValues) -> Self {
-        let weight = |of: &Param| match params.iter().find(|(param, _)| param.id == of.id) {
-            Some((_, Value::Float(weight))) => weight,
-            _ => 1.0,
-        };
+        let weight = |of: &Param| if let Some(Value::Float(weight)) = params.get(of.id) { weight } else { 1.0 };
         Self { c_trav: weight(&C_TRAV), c_isect: weight(&C_ISECT) }
     }
 }

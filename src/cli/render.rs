@@ -4,8 +4,6 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use image::ImageEncoder;
-
 use super::args::{LightArgs, LookArgs, ModelArgs, SceneArgs, Size, ToneArgs, positive, seconds};
 use super::bar;
 use super::context::Context;
@@ -118,11 +116,8 @@ pub fn run(args: &Args, cancel: Cancel) -> Result<(), Failure> {
         out.write(&cx.cancel, |file| picture.write(file).map_err(std::io::Error::other))?;
     } else {
         let pixels = still.develop(&job, None, args.tone.tone(&still.film), None, &cx.pool);
-        out.write(&cx.cancel, |file| {
-            let png = image::codecs::png::PngEncoder::new(&mut *file);
-            png.write_image(&pixels, size.0, size.1, image::ExtendedColorType::Rgba8).map_err(std::io::Error::other)?;
-            file.flush()
-        })?;
+        let png = render::png(&pixels, size.into()).map_err(|why| Failure::Other(why.into()))?;
+        out.write(&cx.cancel, |file| file.write_all(&png))?;
     }
     print(&text(args, &still, times, memory))
 }

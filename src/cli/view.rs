@@ -15,7 +15,7 @@ use crate::scene::Section;
 #[command(next_help_heading = "Options of the window")]
 #[command(group(clap::ArgGroup::new("ray").args(["follow", "rays"])))]
 pub struct Args {
-    /// A file (.gltf, .glb, .obj, .ply, .stl), builtin:NAME, or builtin:NAME?triangles=N.
+    /// A file (.gltf, .glb, .obj, .ply, .stl), a saved workspace (.boxwood), builtin:NAME, or builtin:NAME?triangles=N.
     #[arg(help_heading = None::<&str>)]
     pub model: Option<String>,
     /// The structure to show.
@@ -79,14 +79,14 @@ pub struct Args {
     /// With that, show the triangles of the cell alone.
     #[arg(long, requires_all = ["select", "screenshot"])]
     pub isolate: bool,
-    /// With --select, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
+    /// With --select and --screenshot, try a plane across an axis of the cell, at a place from 0 to 1: x,0.4.
     #[arg(long, value_name = "AXIS,PLACE", value_parser = plane, requires = "select")]
     pub try_plane: Option<(Axis, f64)>,
     /// Begin in the Structure workspace; with --screenshot, make the film of the build first, and go to that part of it, from 0 to 1.
     #[arg(long, value_name = "PART", value_parser = part,
         conflicts_with_all = ["measure", "check", "errors", "follow", "rays", "tour", "panes"])]
     pub film: Option<f32>,
-    /// With --select, compare bounding volumes around the cell and draw one of them: aabb, sphere, obb, kdop8, kdop14, kdop18, kdop26
+    /// With --select and --screenshot, compare bounding volumes around the cell and draw one of them: aabb, sphere, obb, kdop8, kdop14, kdop18, kdop26
     /// or hull.
     #[arg(long, value_name = "KIND", value_parser = volume, requires = "select")]
     pub fit: Option<&'static str>,
@@ -98,7 +98,7 @@ pub struct Args {
     /// follow the dearest of them first.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["follow", "select", "measure", "check", "errors"])]
     pub rays: Option<PathBuf>,
-    /// With one of these, structures whose steps stand beside, at most three, between commas.
+    /// With --follow or --rays, and --screenshot, structures whose steps stand beside, at most three, between commas.
     #[arg(long, value_name = "IDS", value_delimiter = ',', requires = "ray")]
     pub beside: Vec<One>,
     /// Compare the whole view with brute force before the picture is saved.
@@ -119,10 +119,11 @@ pub struct Args {
     /// In a window that folds the panel at the right, open it over the view.
     #[arg(long)]
     pub unfold: bool,
-    /// Turn the camera and switch structures before that, and say how soon pictures followed.
+    /// Turn the camera and switch structures before the picture is saved; say how soon pictures followed, and how long the window's
+    /// thread worked for a frame: at most, and within what for 99 of 100.
     #[arg(long, requires = "screenshot")]
     pub pace: bool,
-    /// Switch structures a thousand times and open fifty models before that, and say what memory was held.
+    /// Switch structures a thousand times and open fifty models before the picture is saved, and say what memory was held.
     #[arg(long, requires = "screenshot")]
     pub endure: bool,
     #[command(flatten)]
@@ -185,9 +186,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 /// Says that there is no window in this build.
 #[cfg(not(feature = "viewer"))]
 pub fn run(_: Args) -> Result<(), Failure> {
-    Err(Failure::Other(anyhow::anyhow!(
-        "this build has no window; the commands scenes, stats, compare, render, rays and trace work. See 'boxwood --help'"
-    )))
+    Err(Failure::Other(anyhow::anyhow!("this build has no window; all commands work without one. See 'boxwood --help'")))
 }
 
 /// A kind of bounding volume that is compared.

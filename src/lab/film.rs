@@ -46,7 +46,7 @@ pub fn is_reinserted(params: &ParamValues) -> bool {
 }
 
 fn is(params: &ParamValues, id: &str, choice: &'static str) -> bool {
-    params.iter().any(|(param, value)| param.id == id && value == Value::Choice(choice))
+    params.get(id) == Some(Value::Choice(choice))
 }
 
 /// Whether there is anything to show: not of a single cell, nor of a grid, whose cells are all there at once.

@@ -135,7 +135,7 @@ pub fn find(
     let options = FitOptions { rounds: 3, cap_secs: 1.0 };
     let both: Vec<&RaySet> = sets.iter().collect();
     let costs = fit_costs(&contestant, &both, &options, pool, cancel, progress)?.into_iter().next().flatten();
-    let cut = matches!(params.iter().find(|(param, _)| param.id == "builder"), Some((_, Value::Choice("sbvh"))));
+    let cut = params.get("builder") == Some(Value::Choice("sbvh"));
     Ok(Finder::new(accel, &job.scene, (entry, cut, outline), &tally, costs, cancel)?.findings())
 }
 

@@ -50,7 +50,7 @@ mod uncut;
 mod visits;
 mod volumes;
 
-pub use brute_check::{BruteCheck, MOST as MOST_UNLIKE, PixelRect, UnlikePixel, check_by_brute_force};
+pub use brute_check::{BruteCheck, PixelRect, UnlikePixel, check_by_brute_force};
 pub use building::{BuiltRow, build_timed};
 pub use costs::{Costs, FitOptions, fit_costs};
 pub use differing::{Differing, differing};

@@ -101,9 +101,7 @@ pub fn of_node(accel: &dyn Accel, node: &Cell, params: &ParamValues, cancel: &Ca
     };
     let [x, y, z] = Axis::ALL.map(sort);
     let sorted = [x?, y?, z?];
-    let bins =
-        params.iter().find(|(param, _)| param.id == "bins").and_then(|(_, v)| if let Value::Int(n) = v { Some(n) } else { None });
-    let bins = bins.unwrap_or(BINS);
+    let bins = if let Some(Value::Int(bins)) = params.get("bins") { bins } else { BINS };
     let candidate = |division: &Division| (division.plane.1, division.cost);
     let mut axes = [const { Vec::new() }; 3];
     let mut exact: Option<Division> = None;
@@ -127,8 +125,7 @@ pub fn of_node(accel: &dyn Accel, node: &Cell, params: &ParamValues, cancel: &Ca
 
 /// The share of the cost that a k-d tree forgives where a plane cuts off nothing but emptiness.
 fn bonus(params: &ParamValues) -> f64 {
-    let bonus = params.iter().find(|(param, _)| param.id == "empty_bonus");
-    bonus.map_or(0.0, |(_, value)| if let Value::Float(bonus) = value { bonus } else { 0.0 })
+    if let Some(Value::Float(bonus)) = params.get("empty_bonus") { bonus } else { 0.0 }
 }
 
 /// All triangles below a node, each once; `None` if there are too many.

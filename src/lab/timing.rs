@@ -43,6 +43,11 @@ pub struct Timing {
 }
 
 impl Timing {
+    /// The spread of [`Self::mrays_per_sec`] that goes with that of the seconds.
+    pub fn mrays_spread(&self) -> f64 {
+        self.mrays_per_sec * self.secs_half_iqr / self.secs_median.max(f64::MIN_POSITIVE)
+    }
+
     /// Sums up the rounds.
     pub(super) fn of_rounds(id: &str, rays: usize, of: usize, hits: u64, secs: &[f64]) -> Self {
         let secs_median = median(secs);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use super::ray_list::ENDINGS;
 use super::workspace_file::ENDING;
@@ -26,6 +26,17 @@ pub trait FileDialog {
     }
 }
 
+/// What a dialog has answered; nothing while it is open, nor where it was closed. The slot is empty once it is not.
+pub fn answered(asked: &mut Option<Receiver<Option<PathBuf>>>) -> Option<PathBuf> {
+    match asked.as_ref()?.try_recv() {
+        Err(TryRecvError::Empty) => None,
+        answer => {
+            *asked = None;
+            answer.ok().flatten()
+        }
+    }
+}
+
 /// The system's own dialog.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SystemDialog;
@@ -45,8 +56,8 @@ impl FileDialog for SystemDialog {
         let ending = name.rsplit_once('.').map_or(ENDING, |(_, ending)| ending);
         let (title, kind) = match ending {
             "csv" => ("Save the table", "Tables"),
-            "svg" => ("Save the figure", "Figures"),
-            "png" => ("Save the picture", "Pictures"),
+            "svg" => ("Save as SVG", "SVG"),
+            "png" => ("Save as PNG", "PNG"),
             _ => ("Save the workspace", "Workspaces"),
         };
         let dialog = rfd::AsyncFileDialog::new().set_title(title).set_file_name(name);

@@ -22,7 +22,7 @@ use super::theme::{self, DASH_PT, LineStyle, PLANE_FILL, Palette};
 use crate::accel::cell::Layout;
 use crate::geometry::Space;
 use crate::geometry::num::floor_index;
-use crate::render::Picture;
+use crate::render::{self, Picture};
 use crate::task::Cancel;
 
 /// What is drawn.
@@ -311,26 +311,12 @@ pub fn png(picture: &Picture) -> Result<Vec<u8>, String> {
     encoded(&picture.rgba, [picture.width, picture.height])
 }
 
-/// The same of four bytes a pixel, which opacity has been multiplied into; so many columns and rows.
+/// The same of four bytes a pixel, as [`render::png`] takes them.
 ///
 /// # Errors
 /// In words, if there are not as many bytes.
-pub fn encoded(rgba: &[u8], [width, height]: [u32; 2]) -> Result<Vec<u8>, String> {
-    // Files hold colours that opacity has not been multiplied into.
-    let plain = |rgba: &[u8; 4]| {
-        let [r, g, b, a] = *rgba;
-        let divided = |c: u8| u8::try_from(u32::from(c) * 255 / u32::from(a.max(1))).unwrap_or(u8::MAX);
-        [divided(r), divided(g), divided(b), a]
-    };
-    let bytes: Vec<u8> = rgba.as_chunks::<4>().0.iter().flat_map(plain).collect();
-    if bytes.len() as u64 != u64::from(width) * u64::from(height) * 4 {
-        return Err("Can't make the picture: it is not whole.".to_owned()); // the encoder would panic
-    }
-    let mut png = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut png);
-    image::ImageEncoder::write_image(encoder, &bytes, width, height, image::ExtendedColorType::Rgba8)
-        .map_err(|why| format!("Can't make the picture: {why}."))?;
-    Ok(png)
+pub fn encoded(rgba: &[u8], size: [u32; 2]) -> Result<Vec<u8>, String> {
+    render::png(rgba, size).map_err(|why| format!("Can't make the picture: {why}."))
 }
 
 /// Text between tags.

@@ -121,7 +121,7 @@ impl PaneChoice {
 
     /// The same with other parameters.
     pub fn with_params(&self, values: &ParamValues) -> Self {
-        let set = values.iter().filter(|(p, v)| p.default() != *v).map(|(p, v)| (p.id.to_owned(), v.to_string()));
+        let set = values.changed().map(|(p, v)| (p.id.to_owned(), v.to_string()));
         Self { params: set.collect(), ..self.clone() }
     }
 

@@ -333,7 +333,7 @@ impl Settings {
 
     /// Remembers the parameters of a structure, as far as they differ from the defaults.
     pub fn remember(&mut self, entry: &Entry, values: &ParamValues) {
-        let set = values.iter().filter(|(p, v)| p.default() != *v).map(|(p, v)| (p.id.to_owned(), v.to_string())).collect();
+        let set = values.changed().map(|(p, v)| (p.id.to_owned(), v.to_string())).collect();
         self.params.insert(entry.id.to_owned(), set);
     }
 

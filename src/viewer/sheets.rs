@@ -8,6 +8,7 @@ use super::rays::Column;
 use super::state::State;
 use super::timings::secs_of_sample;
 use super::tradeoffs::Plot;
+use crate::accel::stats::LEAF_SIZES;
 use crate::accel::{Prune, Step};
 use crate::geometry::Axis;
 use crate::lab::converge::Reference;
@@ -180,7 +181,7 @@ fn timings(state: &State) -> Sheet {
                 bytes,
                 t.map(secs_of_sample).into(),
                 t.map(|t| t.mrays_per_sec).into(),
-                t.map(|t| t.mrays_per_sec * t.secs_half_iqr / t.secs_median.max(f64::MIN_POSITIVE)).into(),
+                t.map(Timing::mrays_spread).into(),
                 t.map(|t| t.nodes_per_ray).into(),
                 t.map(|t| t.prims_per_ray).into(),
                 t.map(|t| t.rounds as u64).into(),
@@ -218,7 +219,8 @@ fn statistics(state: &State) -> Sheet {
         fact("references".into(), stats.references.into(), "");
         stats.memory.iter().for_each(|part| fact(format!("memory: {}", part.name), part.bytes.into(), "B"));
         let sizes = stats.leaf_sizes.iter().enumerate();
-        sizes.for_each(|(i, n)| fact(format!("leaves with {i} triangles"), (*n).into(), ""));
+        let named = |i: usize| if i == LEAF_SIZES - 1 { format!("{i} or more") } else { i.to_string() };
+        sizes.for_each(|(i, n)| fact(format!("leaves with {} triangles", named(i)), (*n).into(), ""));
         let depths = stats.leaf_depths.iter().enumerate();
         depths.for_each(|(i, n)| fact(format!("leaves at depth {i}"), (*n).into(), ""));
     }

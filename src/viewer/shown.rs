@@ -77,23 +77,8 @@ pub fn amounts_less(first: &Picture, second: &Picture, cancel: &Cancel) -> Resul
         if d.is_nan() { [0; 4] } else { [r, g, b, 255] }
     };
     let rgba = off.iter().flat_map(pixel).collect();
-    let (generation, range) = (GENERATION.fetch_sub(1, Ordering::Relaxed), Range { min: -most, max: most });
-    let Picture { request, camera, width, height, progress, .. } = *second;
-    let depth = Arc::clone(&second.depth);
-    Ok(Picture {
-        generation,
-        request,
-        camera,
-        width,
-        height,
-        rgba,
-        depth,
-        range,
-        suits: range,
-        amounts: None,
-        progress,
-        shots: Vec::new(),
-    })
+    let range = Range { min: -most, max: most };
+    Ok(Picture { range, suits: range, ..in_place_of(second, [second.width, second.height], rgba) })
 }
 
 /// A difference where rays that do nothing in one of the structures count as 0 there.

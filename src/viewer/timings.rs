@@ -144,6 +144,9 @@ pub struct Row {
     pub failed: Option<String>,
 }
 
+/// Nothing.
+static NONE: Row = Row { key: None, build_secs: None, bytes: None, timing: None, costs: None, failed: None };
+
 impl Timings {
     /// Takes in a structure that was built, or that is shown again.
     pub fn built(&mut self, built: &Built) {
@@ -172,12 +175,12 @@ impl Timings {
     }
 
     /// Every registered structure with what is known of it.
-    pub fn rows(&self) -> impl Iterator<Item = (&'static Entry, Row)> + '_ {
-        registry::ALL.iter().map(|entry| (entry, self.rows.get(entry.id).cloned().unwrap_or_default()))
+    pub fn rows(&self) -> impl Iterator<Item = (&'static Entry, &Row)> + '_ {
+        registry::ALL.iter().map(|entry| (entry, self.rows.get(entry.id).unwrap_or(&NONE)))
     }
 
     /// The same in the order of a column; rows of which that is not known come last.
-    pub fn sorted(&self, terms: &Terms) -> Vec<(&'static Entry, Row)> {
+    pub fn sorted(&self, terms: &Terms) -> Vec<(&'static Entry, &Row)> {
         let mut rows: Vec<_> = self.rows().collect();
         if terms.column == Column::Structure && terms.reversed {
             rows.reverse();

@@ -41,7 +41,7 @@ const ALWAYS: [&str; 12] =
 /// What stands beside the bar because it belongs to the panel there.
 const BESIDE: [&str; 13] = [
     "Statistics",
-    "Findings",
+    "This model",
     "Check this model",
     "Selected cell",
     "Ray",

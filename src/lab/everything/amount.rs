@@ -110,7 +110,7 @@ impl Amount {
 /// The arguments of the command line that set what structures are built with otherwise than usual, each after a blank.
 pub fn settings(structures: &[(&'static Entry, ParamValues)]) -> String {
     let of = |(entry, params): &(&'static Entry, ParamValues)| -> String {
-        let changed = params.iter().filter(|(param, value)| param.default() != *value);
+        let changed = params.changed();
         changed.map(|(param, value)| format!(" --set {}.{}={value}", entry.id, param.id)).collect()
     };
     structures.iter().map(of).collect()

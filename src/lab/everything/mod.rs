@@ -252,10 +252,7 @@ fn pictures(view: &impl Fn(Mode) -> Job, amount: &Amount, cx: &BuildCx) -> Resul
         let still = render::render(&job, (width, height), &until, &cx.pool, &cx.cancel, &Progress::new())?;
         let exposure = still.film.fitting_exposure().filter(|_| mode == Mode::Path).unwrap_or(0.0);
         let rgba = still.develop(&job, None, Tone { exposure, curve: Curve::Filmic }, None, &cx.pool);
-        let mut png = Vec::new();
-        let encoder = image::codecs::png::PngEncoder::new(&mut png);
-        image::ImageEncoder::write_image(encoder, &rgba, width, height, image::ExtendedColorType::Rgba8)
-            .map_err(|why| form("a picture", why))?;
+        let png = render::png(&rgba, [width, height]).map_err(|why| form("a picture", why))?;
         let exposed = if mode == Mode::Path { format!(", {exposure:+.1} stops, filmic") } else { String::new() };
         pictures.push(Shown { png, caption: format!("{}, {spp} samples a pixel{exposed}.", mode.label()) });
         cx.progress.advance(1);

@@ -5,7 +5,6 @@ use crate::accel::registry;
 use crate::render::Mode;
 use crate::viewer::command::Command;
 use crate::viewer::panes::{Arrange, LETTERS, MOST, PaneChoice, Shows};
-use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
 use crate::viewer::tradeoffs::{Goodness, Miss, Plot};
 
@@ -14,10 +13,10 @@ const DIVIDER_STEP: f32 = 0.05;
 
 /// Adds them.
 pub(super) fn add(list: &mut List, state: &State) {
+    let second = state.settings.panes.others.first().map(|choice| choice.entry().id);
     for entry in registry::ALL {
-        let here = state.settings.workspace == Workspace::Compare && state.settings.mode != Mode::Path;
-        let other = entry.id != state.settings.entry().id;
-        list.add(format!("Split with {}", entry.name), Command::PutBeside(Some(entry.id))).if_possible(here && other);
+        let with = list.add(format!("Compare with {}", entry.name), Command::PutBeside(Some(entry.id)));
+        with.if_possible(state.offers_panes() && second != Some(entry.id));
     }
     panes(list, state);
     errors(list, state);

@@ -10,7 +10,7 @@ use crate::viewer::timings::Column;
 
 /// Adds them.
 pub(super) fn add(list: &mut List, state: &State) {
-    let free = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+    let free = state.can_measure();
     list.add("Measure all structures", Command::Measure).if_possible(free);
     list.add("Time the tiles of the view", Command::TimeTiles).if_possible(free && state.tiles.shown);
     list.add("Look for causes of slow rays", Command::FindCauses).if_possible(free);

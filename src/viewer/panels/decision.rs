@@ -27,7 +27,7 @@ const DECIMALS: usize = 3;
 pub fn show(ui: &mut Ui, state: &State, curves: &SahCurves, commands: &mut Commands) {
     let (axis, tried) = tried(state, curves);
     let hidden = hidden(state);
-    let response = plot(ui, curves, hidden, (axis, tried));
+    let response = plot(ui, curves, hidden, (axis, tried)).on_hover_text("Click or drag to try a plane; arrow keys move it.");
     if !hidden && as_table::choice(ui, "SAH cost") {
         costs(ui, curves);
     }
@@ -118,7 +118,7 @@ pub fn plot(ui: &mut Ui, curves: &SahCurves, hidden: bool, (axis, tried): (Axis,
         let stroke = Stroke::new(1.0, palette.accent_text);
         painter.rect_stroke(rect, 0.0, stroke, eframe::egui::StrokeKind::Inside);
     }
-    response.on_hover_text("The expected cost of a line through this cell if it were divided at a place along x, y or z: C_trav + C_isect (A_l n_l + A_r n_r) / A. Dashed: a leaf. Ring: what was chosen. Bars: the planes that a builder with buckets looks at. Click or drag to try a plane; arrow keys move it.")
+    response.on_hover_text("The expected cost of a line through this cell if it were divided at a place along x, y or z: C_trav + C_isect (A_l n_l + A_r n_r) / A. Dashed: a leaf. Ring: what was chosen. Bars: the planes that a builder with buckets looks at.")
 }
 
 /// From costs to points.

@@ -52,6 +52,6 @@ const fn sign(workspace: Workspace) -> (&'static str, &'static str) {
         Workspace::Structure => ("#", "Selected cell"),
         Workspace::Ray => ("»", "Ray"),
         Workspace::Compare => ("±", "Errors"),
-        Workspace::Check => ("?", "Findings"),
+        Workspace::Check => ("?", "This model"),
     }
 }

@@ -34,7 +34,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         let built = format::duration(live.build_secs);
         fact(ui, live.key.entry.short, figures, &format!("Built in {built}; the curve begins after that."));
     }
-    empty(ui, "Choose another structure to add its curve. Moving the camera begins anew.");
+    empty(
+        ui,
+        "Curves are those of the path traced picture: choose another structure to add its curve. Moving the camera begins anew.",
+    );
     heading(ui, "Measures");
     empty(ui, "Of a value v and the reference's r, over all pixels and linear red, green and blue.");
     for metric in Metric::ALL.into_iter().filter(|metric| *metric != Metric::Flip) {

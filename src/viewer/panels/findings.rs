@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         saves::show(ui, What::Findings, state, commands);
     }
     if state.causes.found.is_none() || state.causes_are_old() {
-        let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+        let possible = state.can_measure();
         let help = "Follow some of this view's rays and say what makes them slow: about two seconds. Rendering rests meanwhile.";
         if ui.add_enabled(possible, Button::new("Look for causes")).on_hover_text(help).clicked() {
             commands.push(Command::FindCauses);

@@ -67,7 +67,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         empty(ui, note);
     }
     if made.is_none_or(|(_, old)| old) {
-        let possible = state.building.is_none() && !state.is_measuring() && !state.is_checking();
+        let possible = state.can_measure();
         let help = "Put a volume of each kind around the triangles of the node and try them with rays of this view: some seconds \
                     at most. Rendering rests meanwhile.";
         if ui.add_enabled(possible, Button::new("Compare bounding volumes")).on_hover_text(help).clicked() {

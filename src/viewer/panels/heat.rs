@@ -77,7 +77,7 @@ fn tiles(ui: &mut Ui, state: &State, commands: &mut Commands) {
         None => empty(ui, "Not timed."),
     }
     if old || state.tiles.found.is_none() {
-        let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+        let possible = state.can_measure();
         let help = format!(
             "Time the rays of each tile of {TILE} by {TILE} pixels on one thread, the least of {REPEATS} times or as many as some seconds allow, {}. Rendering rests meanwhile.",
             TERMS.label()

@@ -61,7 +61,7 @@ fn measure(ui: &mut Ui, state: &State, commands: &mut Commands) {
         let help = "Bytes of model, triangles, structure and textures less than if everything were kept.";
         fact(ui, "Saved in all", format!("{} of {}", format::bytes(saved), format::bytes(report.forced_bytes)), help);
     }
-    let idle = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+    let idle = state.can_measure();
     let button = ui.add_enabled(idle, eframe::egui::Button::new("Measure what is left out"));
     let help = "Loads the model once more with everything, builds the structure over it, and times rays with each thing. Nothing else runs meanwhile.";
     if button.on_hover_text(help).clicked() {

@@ -181,7 +181,7 @@ pub fn names(state: &State) -> Vec<String> {
 fn name(key: &Key, all: &[Key]) -> String {
     let mut name = key.entry.name.to_owned();
     if all.iter().any(|other| other.entry.id == key.entry.id && other != key) {
-        for (param, value) in key.params.iter().filter(|(param, value)| param.default() != *value) {
+        for (param, value) in key.params.changed() {
             name.push_str(&format!(" {}={value}", param.id));
         }
         if all.iter().any(|other| other.entry.id == key.entry.id && other.test != key.test) {

@@ -24,7 +24,7 @@ pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
             ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(ui.available_width().min(40.0 * theme::GRID)).text(text));
             return;
         }
-        let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+        let possible = state.can_measure();
         let help = "Make the model in growing sizes (a built-in scene in each, another one cut finer), build structures over each, and time them on random lines. Rendering rests meanwhile.";
         if ui.add_enabled(possible, Button::new("Measure")).on_hover_text(help).clicked() {
             commands.push(Command::MeasureScaling);

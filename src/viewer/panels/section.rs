@@ -9,8 +9,9 @@ use crate::viewer::state::State;
 use crate::viewer::theme;
 
 /// What is cut and what is not.
-const HELP: &str = "Cut away what is on one side of a plane, for rays of the camera, the preview and boxes. Rays that leave what \
-                    they meet, for shadows, openness and light, see the whole model, and so do the rays that are measured.";
+const HELP: &str = "Cut away what is on one side of a plane, for rays of the camera and the preview; boxes that lie wholly there are \
+                    not drawn. Rays that leave what they meet, for shadows, openness and light, see the whole model, and so do \
+                    the rays that are measured.";
 
 /// The width of the slider.
 const SLIDER: f32 = 18.0 * theme::GRID;

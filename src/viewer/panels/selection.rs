@@ -27,7 +27,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
                     decision::outcome(ui, curves);
                 }
             }
-            Some((id, None)) if *id == cell.id => super::empty(ui, "No division to weigh: fewer than two triangles."),
+            Some((id, None)) if *id == cell.id => {
+                super::empty(ui, "No division to weigh: fewer than two triangles, or too many.")
+            }
             _ if state.is_measuring() => super::empty(ui, "Worked out once measuring has ended."),
             _ => drop(ui.spinner().on_hover_text("Working out what each division would cost.")),
         }

@@ -64,7 +64,8 @@ const TERMS: &[Term] = &[
         what: "What a line through a node would cost, were its triangles divided in two.",
         formula: "C_trav + C_isect (A_l n_l + A_r n_r) / A",
         here: |state| {
-            let curves = state.curves.as_ref().and_then(|curves| curves.1.as_ref());
+            // What is hidden is told nowhere.
+            let curves = state.curves.as_ref().and_then(|curves| curves.1.as_ref()).filter(|_| !super::node::hidden(state));
             or_missing(curves.and_then(|curves| curves.chosen), |chosen| number(chosen.cost))
         },
         source: "MacDonald and Booth 1990",
@@ -74,10 +75,7 @@ const TERMS: &[Term] = &[
         what: "Weighing only the planes between a few slices of equal width, not those between all triangles.",
         formula: "bin(c) = floor(bins (c - min) / (max - min))",
         here: |state| {
-            let params = state.shown.as_ref().map(|shown| shown.key.params.clone());
-            let bins =
-                params.and_then(|params| params.iter().find(|(param, _)| param.id == "bins").map(|(_, bins)| bins.to_string()));
-            or_missing(bins, |bins| format!("{bins} bins"))
+            or_missing(state.shown.as_ref().and_then(|shown| shown.key.params.get("bins")), |bins| format!("{bins} bins"))
         },
         source: "Wald 2007",
     },

@@ -54,10 +54,7 @@ fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
         );
         return;
     }
-    let measure = ui.add_enabled(
-        state.shown.is_some() && state.building.is_none() && !state.is_checking() && !state.is_measuring(),
-        egui::Button::new("Measure"),
-    );
+    let measure = ui.add_enabled(state.can_measure(), egui::Button::new("Measure"));
     let help = "Build every structure and time all of them on the rays of this view, in turn, at least five rounds and a second each. Rendering rests meanwhile.";
     if measure.on_hover_text(help).clicked() {
         commands.push(Command::Measure);
@@ -89,7 +86,7 @@ fn table(ui: &mut Ui, state: &State, commands: &mut Commands) {
         })
         .body(|mut body| {
             for (entry, row) in state.timings.sorted(&state.terms_of_timings) {
-                body.row(theme::ROW, |mut cells| cells_of(&mut cells, state, (entry, &row), most));
+                body.row(theme::ROW, |mut cells| cells_of(&mut cells, state, (entry, row), most));
             }
             body.row(theme::ROW, |mut cells| raster_row(&mut cells, state.timings.raster.as_ref(), most));
         });
@@ -144,12 +141,7 @@ fn cells_of(cells: &mut TableRow<'_, '_>, state: &State, (entry, row): (&Entry, 
 
 /// Rays a second and their spread.
 fn rate(t: &Timing) -> String {
-    format!("{} ±{}", format::number(t.mrays_per_sec), format::number(spread_of(t)))
-}
-
-/// The spread of the rays a second.
-fn spread_of(t: &Timing) -> f64 {
-    t.mrays_per_sec * t.secs_half_iqr / t.secs_median.max(f64::MIN_POSITIVE)
+    format!("{} ±{}", format::number(t.mrays_per_sec), format::number(t.mrays_spread()))
 }
 
 /// A bar at the foot of a cell: rays a second as a share of the most, with their spread at its end.
@@ -157,7 +149,7 @@ fn bar(ui: &Ui, t: &Timing, most: f64, family: Family) {
     let cell = ui.max_rect();
     let at = |rate: f64| cell.left() + cell.width() * (rate / most.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0) as f32;
     let rect = Rect::from_min_max(pos2(cell.left(), cell.bottom() - theme::BAR), pos2(at(t.mrays_per_sec), cell.bottom()));
-    let (painter, spread) = (ui.painter(), spread_of(t));
+    let (painter, spread) = (ui.painter(), t.mrays_spread());
     painter.rect_filled(rect, 0.0, marks::color(ui, family));
     let ends = at(t.mrays_per_sec - spread)..=at(t.mrays_per_sec + spread);
     let text = Palette::in_ui(ui).text;

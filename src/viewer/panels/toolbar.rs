@@ -10,7 +10,6 @@ use crate::render::sampler::SamplerKind;
 use crate::render::{Curve, HeatRays, Mode};
 use crate::viewer::command::Command;
 use crate::viewer::panes::{Arrange, LETTERS, PaneChoice};
-use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -37,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         ui.add_space(theme::GRID);
         ui.horizontal(|ui| look(ui, commands));
     }
-    if state.settings.workspace == Workspace::Compare && state.settings.mode != Mode::Path && !state.tiles.shown {
+    if state.offers_panes() {
         ui.add_space(theme::GRID);
         ui.horizontal(|ui| compared(ui, state, commands));
     }

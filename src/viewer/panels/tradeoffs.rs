@@ -53,7 +53,7 @@ pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
             ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(ui.available_width().min(40.0 * theme::GRID)).text(text));
             return;
         }
-        let possible = state.shown.is_some() && state.building.is_none() && !state.is_measuring() && !state.is_checking();
+        let possible = state.can_measure();
         let help = "Build every structure, and the BVH by every builder, with each triangle test, and time them on rays of this view: some seconds each. Rendering rests meanwhile.";
         if ui.add_enabled(possible, Button::new("Measure")).on_hover_text(help).clicked() {
             commands.push(Command::MeasureTradeoffs);

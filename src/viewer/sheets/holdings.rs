@@ -33,7 +33,7 @@ fn parts(built: &Built) -> Vec<MemoryPart> {
 
 /// What tells a structure from another of its kind: parameters that are not their defaults, and the triangle test.
 fn chosen(key: &Key) -> String {
-    let set = key.params.iter().filter(|(param, value)| param.default() != *value);
+    let set = key.params.changed();
     let set = set.map(|(param, value)| format!("{}={value}", param.id));
     set.chain([format!("test={}", key.test.id())]).collect::<Vec<_>>().join(" ")
 }

@@ -1,6 +1,5 @@
 //! Comparing a part of the picture with brute force: started, taken in, and its rays followed.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::State;
@@ -43,12 +42,11 @@ impl State {
         if !self.can_compare_with_brute_force() {
             return;
         }
-        let (Some(model), Some(shown), Some(entry)) = (&self.model, &self.shown, registry::find(BRUTE)) else { return };
+        let (Some(_model), Some(shown), Some(entry)) = (&self.model, &self.shown, registry::find(BRUTE)) else { return };
         let test = entry.tests().find(|test| *test == shown.key.test).unwrap_or_default();
         let key = Key { entry, params: self.settings.params_of(entry), test };
         let there = self.kept.take_up(&key).ok_or(key);
-        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        let whole = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
+        let Some(whole) = self.traced_view(Mode::Shaded) else { return };
         let view = render::Job { section: self.section(), visible: self.visible().cloned(), ..whole };
         let part = Part { rect: rect.unwrap_or_else(|| PixelRect::whole(self.size_px)), size_px: self.size_px };
         let job = brute::compare(&self.shared, there, view, part);

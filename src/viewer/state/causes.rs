@@ -1,11 +1,9 @@
 //! Why rays are slow: looked for in the background, and shown in the tree.
 
-use std::sync::Arc;
-
 use super::State;
 use crate::job::Outcome;
 use crate::lab::findings::Findings;
-use crate::render::{self, Mode};
+use crate::render::Mode;
 use crate::scene::Camera;
 use crate::viewer::kept::Key;
 use crate::viewer::settings::Workspace;
@@ -27,13 +25,8 @@ pub struct Causes {
 impl State {
     /// Starts looking.
     pub(super) fn find_causes(&mut self) {
-        if self.is_measuring() || self.is_checking() {
-            return;
-        }
-        let pause = self.begin_measuring();
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        let view = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
+        let Some((view, pause)) = self.begin_on_view(Mode::Shaded) else { return };
+        let Some(shown) = &self.shown else { return };
         let outline = self.tree.outline.clone();
         self.causes.asked = Some((shown.key.clone(), self.camera));
         match workers::find_causes(&self.shared, (shown, outline), (view, self.size_px), pause) {

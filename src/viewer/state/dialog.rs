@@ -1,9 +1,9 @@
 //! The dialog that asks for a file, from its opening to its answer.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
 
 use super::State;
+use crate::viewer::dialogs::answered;
 
 impl State {
     /// Opens the dialog, unless it is open: of two, the first would ask in vain.
@@ -15,15 +15,8 @@ impl State {
 
     /// Opens what was picked.
     pub(super) fn advance_dialog(&mut self) {
-        match self.asked_for_file.as_ref().map(Receiver::try_recv) {
-            Some(Ok(path)) => {
-                self.asked_for_file = None;
-                if let Some(path) = path {
-                    self.open(path.to_string_lossy().into_owned());
-                }
-            }
-            Some(Err(TryRecvError::Disconnected)) => self.asked_for_file = None,
-            Some(Err(TryRecvError::Empty)) | None => {}
+        if let Some(path) = answered(&mut self.asked_for_file) {
+            self.open(path.to_string_lossy().into_owned());
         }
     }
 }

@@ -157,7 +157,7 @@ impl State {
             Command::Present(present) => self.presenting = present,
             Command::Unfold(open) => self.unfolded = open,
             Command::PutBeside(id) => self.put_beside(id),
-            Command::PutPane(which, choice) => self.put_pane(which, choice),
+            Command::PutPane(which, choice) => self.settings.panes.put(which, choice),
             Command::ClosePane(which) => self.close_pane(which),
             Command::TunePane(which) => self.panes.tuned = which,
             Command::Arrange(arrange) => self.settings.panes.arrange = arrange,

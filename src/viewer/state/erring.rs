@@ -102,16 +102,9 @@ impl State {
 
     /// Starts a reference of the present view; the picture rests meanwhile.
     pub(super) fn make_reference(&mut self) {
-        if self.is_measuring() || self.is_checking() || self.size_px.contains(&0) {
-            return;
-        }
-        let pause = self.begin_measuring();
-        let (Some(model), Some(shown), Some((spp, _))) = (&self.model, &self.shown, self.errors.wanted_reference()) else {
-            return;
-        };
-        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
+        let Some((spp, _)) = self.errors.wanted_reference() else { return };
+        let Some((whole, pause)) = self.begin_on_view(Mode::Path) else { return };
         // What the picture shows, since it is what is compared.
-        let whole = render::Job::new(scene, accel, self.camera, Mode::Path, Arc::clone(&model.looks));
         let view = render::Job { section: self.section(), visible: self.visible().cloned(), ..whole };
         match workers::reference(&self.shared, view, self.size_px, spp, pause) {
             Ok(job) => self.errors.making = Some((spp, job)),

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::TryRecvError;
 
 use super::State;
 use super::finished::sentence;
@@ -14,6 +13,7 @@ use crate::render::Looks;
 use crate::scene::texture::Detail;
 use crate::scene::{CameraSpec, LoadCx};
 use crate::task::{Cancel, Progress};
+use crate::viewer::dialogs::answered;
 use crate::viewer::exports::{Export, Form, Writing};
 use crate::viewer::figure::Figure;
 use crate::viewer::mosaic::Mosaic;
@@ -45,11 +45,11 @@ impl State {
     /// Takes the answers of dialogs, and what was written.
     pub(super) fn advance_exports(&mut self) {
         if let Some((export, receiver)) = self.exports.asked.take() {
-            match receiver.try_recv() {
-                Ok(Some(path)) => self.export(export, path),
-                Err(TryRecvError::Empty) => self.exports.asked = Some((export, receiver)),
-                Ok(None) | Err(TryRecvError::Disconnected) => {}
+            let mut asked = Some(receiver);
+            if let Some(path) = answered(&mut asked) {
+                self.export(export, path);
             }
+            self.exports.asked = asked.map(|receiver| (export, receiver));
         }
         if let Some((export, job)) = self.exports.writing.take()
             && let Some(job) = self.written(export.name(), job)

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
 
 use super::State;
 use super::finished::sentence;
 use crate::job::Outcome;
 use crate::lab::RayKind;
 use crate::viewer::command::Command;
+use crate::viewer::dialogs::answered;
 use crate::viewer::ray_list::{self, RayList};
 use crate::viewer::settings::Workspace;
 
@@ -61,15 +61,8 @@ impl State {
     }
 
     pub(super) fn advance_ray_list(&mut self) {
-        match self.ray_list.asked.as_ref().map(Receiver::try_recv) {
-            Some(Ok(path)) => {
-                self.ray_list.asked = None;
-                if let Some(path) = path {
-                    self.open_rays(path);
-                }
-            }
-            Some(Err(TryRecvError::Disconnected)) => self.ray_list.asked = None,
-            Some(Err(TryRecvError::Empty)) | None => {}
+        if let Some(path) = answered(&mut self.ray_list.asked) {
+            self.open_rays(path);
         }
         if self.loading.is_none()
             && let Some(path) = self.ray_list.awaited.take()

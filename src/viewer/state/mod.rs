@@ -1,6 +1,7 @@
 //! What the window knows; `dispatch` is how commands change it, `finished` what finished jobs change, and `refresh` what is asked
 //! for anew when the view changes. No drawing here.
 
+mod asked;
 mod bookmarks;
 mod brute_force;
 mod causes;
@@ -29,6 +30,7 @@ mod trading;
 mod visiting;
 mod volumes;
 
+use asked::Asked;
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
 pub use heating::LEAST_SPAN;
@@ -69,12 +71,10 @@ use super::workers::{
     self, Building, Collecting, Counting, Curving, Decoding, Loading, Measuring, Needing, Picking, Plan, Predicting, Shared,
 };
 use super::workspace_file::WorkspaceFile;
-use crate::accel::{CellId, Visibility, cell};
-use crate::geometry::HalfSpace;
+use crate::accel::{CellId, cell};
 use crate::lab::SahCurves;
 use crate::lab::needs::NeedsReport;
-use crate::render::sampler::SamplerKind;
-use crate::render::{self, HeatRays, Mode, Picture, Range, Renderer, Tone};
+use crate::render::{Mode, Picture, Range, Renderer};
 use crate::scene::texture::Detail;
 use crate::scene::{Camera, CameraSpec, Section};
 use crate::task::Pool;
@@ -237,33 +237,6 @@ pub struct State {
     shared: Shared,
 }
 
-/// What the renderer was last asked for.
-#[derive(Clone, PartialEq)]
-struct Asked {
-    number: u64,
-    key: Key,
-    model: u64,
-    camera: Camera,
-    /// What of the world is left.
-    section: Option<HalfSpace>,
-    /// Which triangles are seen.
-    visible: Option<Arc<Visibility>>,
-    mode: Mode,
-    /// Whose work is shown, of heat maps.
-    heat_rays: HeatRays,
-    range: Option<Range>,
-    size_px: [u32; 2],
-    max_samples: u32,
-    /// Which textures were there.
-    textured: Option<Detail>,
-    /// The numbers that samples are made of.
-    sampler: SamplerKind,
-    /// How light becomes colour.
-    tone: Tone,
-    /// Whether light is kept on its way.
-    keeps: bool,
-}
-
 /// How soon the first picture of a request was there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
@@ -398,6 +371,11 @@ impl State {
             || self.ray_list.tracing.is_some()
             || self.filming.making.is_some()
             || self.hiding.is_some()
+    }
+
+    /// Whether a measurement can begin: there is a structure, and nothing runs that either would disturb.
+    pub fn can_measure(&self) -> bool {
+        self.shown.is_some() && self.building.is_none() && !self.is_measuring() && !self.is_checking()
     }
 
     /// Width over height of the viewport.
@@ -584,7 +562,7 @@ impl State {
 
     /// Every structure over the open model, those that are kept and those to be built, and the present view.
     fn plan(&mut self) -> Option<Plan> {
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return None };
+        let (Some(_model), Some(_shown)) = (&self.model, &self.shown) else { return None };
         let test = self.settings.common_test();
         let wanted = crate::accel::registry::ALL.iter().map(|entry| Key { entry, params: self.settings.params_of(entry), test });
         let (mut kept, mut missing) = (Vec::new(), Vec::new());
@@ -594,8 +572,7 @@ impl State {
                 None => missing.push(key),
             }
         }
-        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        let view = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
+        let view = self.traced_view(Mode::Shaded)?;
         self.building = None;
         Some(Plan { kept, missing, view, size_px: self.size_px })
     }

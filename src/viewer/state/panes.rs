@@ -7,8 +7,7 @@ use super::{Asked, State};
 use crate::accel::BuildError;
 use crate::accel::registry;
 use crate::job::{Job, Outcome};
-use crate::render::sampler::Sampling;
-use crate::render::{self, Mode, Picture, Renderer, Request};
+use crate::render::{Mode, Picture, Renderer};
 use crate::task::Cancelled;
 use crate::viewer::gpu::Overlay;
 use crate::viewer::kept::{Built, Key};
@@ -103,7 +102,8 @@ impl State {
         match id.and_then(registry::find) {
             Some(entry) => {
                 let shows = self.settings.panes.others.first().map_or_else(Shows::default, |first| first.shows);
-                self.put_pane(0, PaneChoice { shows, ..PaneChoice::of(entry, &self.settings) });
+                let choice = PaneChoice { shows, ..PaneChoice::of(entry, &self.settings) };
+                self.settings.panes.put(0, choice);
             }
             None => {
                 self.settings.panes.others.clear();
@@ -111,11 +111,6 @@ impl State {
                 self.panes.tuned = None;
             }
         }
-    }
-
-    /// Puts another choice into a pane beside A.
-    pub(super) fn put_pane(&mut self, which: usize, choice: PaneChoice) {
-        self.settings.panes.put(which, choice);
     }
 
     /// Takes a pane away; the others stay as they are.
@@ -130,8 +125,12 @@ impl State {
 
     /// Whether pictures stand beside the first. Where errors are measured against seconds nothing else is traced.
     pub fn is_comparing(&self) -> bool {
-        let offered = self.settings.workspace == Workspace::Compare && self.settings.mode != Mode::Path && !self.tiles.shown;
-        offered && !self.settings.panes.on_screen().is_empty()
+        self.offers_panes() && !self.settings.panes.on_screen().is_empty()
+    }
+
+    /// Whether pictures can stand beside the first.
+    pub fn offers_panes(&self) -> bool {
+        self.settings.workspace == Workspace::Compare && self.settings.mode != Mode::Path && !self.tiles.shown
     }
 
     /// Whether all of those are there.
@@ -264,13 +263,7 @@ impl State {
         }
         let (Some(renderer), Some(built)) = (&pane.renderer, &pane.built) else { return };
         if pane.requested.as_ref() != Some(&wanted) && !self.is_measuring() && self.hidden.is_none() {
-            let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&built.accel));
-            let sampling = Sampling { kind: wanted.sampler, seed: 0 };
-            let job = render::Job::new(scene, accel, wanted.camera, wanted.mode, Arc::clone(&model.looks));
-            let ([width, height], max_samples, tone) = (wanted.size_px, wanted.max_samples, wanted.tone);
-            let (range, heat_rays, section) = (wanted.range, wanted.heat_rays, wanted.section);
-            let job = render::Job { sampling, heat_rays, section, visible: wanted.visible.clone(), ..job };
-            let number = renderer.request(Request { job, width, height, max_samples, range, tone, keep: None });
+            let number = renderer.request(wanted.request(model, &built.accel, None));
             pane.requested = Some(Asked { number, ..wanted });
         }
         pane.picture = renderer.picture().or_else(|| pane.picture.take());
@@ -351,7 +344,7 @@ impl State {
         }
         let current = |(mode, of): &(Mode, Vec<Key>)| self.panes.fits.iter().any(|fit| fit.is_of(*mode, of));
         let fitted = self.shared_modes().iter().all(current);
-        let range = self.range.or_else(|| self.range_of(self.settings.mode));
+        let range = self.range_of(self.settings.mode);
         let mapped = self.requested.as_ref().is_some_and(|asked| asked.range == range);
         let boxes = self.wanted_boxes();
         let at_rest = |(pane, choice): (&Pane, &PaneChoice)| {

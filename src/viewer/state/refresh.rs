@@ -5,8 +5,7 @@ use std::time::Instant;
 
 use super::{Answer, Asked, CHANGE_SHOWN, State};
 use crate::job::Outcome;
-use crate::render::sampler::Sampling;
-use crate::render::{self, HeatRays, Picture, Request};
+use crate::render::{HeatRays, Picture};
 use crate::viewer::gpu::Overlay;
 use crate::viewer::overlay::{Known, Wanted};
 use crate::viewer::pick::Picked;
@@ -29,8 +28,7 @@ impl State {
     pub(super) fn refresh_picture(&mut self) {
         let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
         let number = self.requested.as_ref().map_or(0, |a| a.number);
-        let [width, height] = self.size_px;
-        let (mode, max_samples) = (self.settings.mode, self.settings.max_samples);
+        let mode = self.settings.mode;
         let asked = Asked {
             number,
             key: shown.key.clone(),
@@ -41,23 +39,17 @@ impl State {
             mode,
             // Of other pictures it changes nothing.
             heat_rays: if mode.is_heat() { self.settings.heat_rays } else { HeatRays::default() },
-            range: self.range.or_else(|| self.range_of(mode)),
+            range: self.range_of(mode),
             size_px: self.size_px,
-            max_samples,
+            max_samples: self.settings.max_samples,
             textured: self.textures,
             sampler: self.settings.sampler,
             tone: self.settings.tone,
             keeps: self.keeps_light(),
         };
-        if self.requested.as_ref() != Some(&asked) && width > 0 && height > 0 {
-            let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-            let sampling = Sampling { kind: asked.sampler, seed: 0 };
-            let whole = render::Job::new(scene, accel, self.camera, mode, Arc::clone(&model.looks));
-            let (heat_rays, section, visible) = (asked.heat_rays, asked.section, asked.visible.clone());
-            let job = render::Job { sampling, heat_rays, section, visible, ..whole };
+        if self.requested.as_ref() != Some(&asked) && !self.size_px.contains(&0) {
             let keep = asked.keeps.then(|| self.shared.budget.clone());
-            let request = Request { job, width, height, max_samples, range: asked.range, tone: asked.tone, keep };
-            let number = self.renderer.request(request);
+            let number = self.renderer.request(asked.request(model, &shown.accel, keep));
             self.follow_errors(&asked);
             self.requested = Some(Asked { number, ..asked });
             self.requested_at = Instant::now();

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
+use std::sync::mpsc::Receiver;
 
 use super::State;
 use crate::accel::{CellId, registry};
 use crate::geometry::Axis;
 use crate::job::{Job, Outcome};
 use crate::lab::follow::{from_text, to_text};
+use crate::viewer::dialogs::answered;
 use crate::viewer::files;
 use crate::viewer::kept::Key;
 use crate::viewer::model::Instances;
@@ -85,13 +86,8 @@ impl State {
     }
 
     pub(super) fn advance_saving(&mut self) {
-        match self.saving.asked.as_ref().map(Receiver::try_recv) {
-            Some(Ok(path)) => {
-                self.saving.asked = None;
-                self.write(path);
-            }
-            Some(Err(TryRecvError::Disconnected)) => self.saving.asked = None,
-            Some(Err(TryRecvError::Empty)) | None => {}
+        if let Some(path) = answered(&mut self.saving.asked) {
+            self.write(path);
         }
         if let Some(job) = self.saving.writing.take() {
             match job.poll() {
@@ -121,8 +117,8 @@ impl State {
         self.await_selection();
     }
 
-    fn write(&mut self, path: Option<PathBuf>) {
-        let (Some(path), Some(file)) = (path, self.to_file()) else { return };
+    fn write(&mut self, path: PathBuf) {
+        let Some(file) = self.to_file() else { return };
         let write = move || file.write(&files::with_ending(path, ENDING)?);
         match Job::spawn("save", self.shared.waker(), move |_, _| write()) {
             Ok(job) => self.saving.writing = Some(job),

@@ -27,14 +27,8 @@ impl State {
 
     /// Starts timing the tiles of the present view.
     pub(super) fn time_tiles(&mut self) {
-        if self.is_measuring() || self.is_checking() || self.size_px.contains(&0) {
-            return;
-        }
         let Some(of) = self.tile_view() else { return };
-        let pause = self.begin_measuring();
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        let view = render::Job::new(scene, accel, self.camera, Mode::Nodes, Arc::clone(&model.looks));
+        let Some((view, pause)) = self.begin_on_view(Mode::Nodes) else { return };
         let view = render::Job { heat_rays: of.rays, section: of.section, ..view };
         self.tiles.clear();
         match tiles::time(&self.shared, view, self.size_px, pause) {
@@ -83,7 +77,7 @@ impl State {
     }
 
     /// The picture of the present view, if it is no coarse one.
-    fn whole_picture(&self) -> Option<&Arc<Picture>> {
+    pub(super) fn whole_picture(&self) -> Option<&Arc<Picture>> {
         self.picture.as_ref().filter(|picture| picture.camera == self.camera && picture.progress.step == 1)
     }
 

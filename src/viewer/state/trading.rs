@@ -1,6 +1,5 @@
 //! The Compare workspace: quality against its cost, measured in the background.
 
-use std::sync::Arc;
 use std::sync::mpsc::channel;
 
 use super::State;
@@ -9,20 +8,14 @@ use crate::accel::registry;
 use crate::job::Outcome;
 use crate::lab::CheckError;
 use crate::lab::tradeoffs::Variant;
-use crate::render::{self, Mode};
+use crate::render::Mode;
 use crate::viewer::workers;
 
 impl State {
     /// Starts measuring every variant on the present view, with what structures are set to.
     pub(super) fn measure_tradeoffs(&mut self) {
-        if self.is_measuring() || self.is_checking() || self.size_px.contains(&0) {
-            return;
-        }
-        let pause = self.begin_measuring();
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
+        let Some((view, pause)) = self.begin_on_view(Mode::Shaded) else { return };
         let entries: Vec<_> = registry::ALL.iter().map(|entry| (entry, self.settings.params_of(entry))).collect();
-        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        let view = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
         let (sender, receiver) = channel();
         self.building = None;
         match workers::tradeoffs(&self.shared, Variant::all_of(&entries), view, self.size_px, (sender, pause)) {

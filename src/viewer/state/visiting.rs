@@ -79,14 +79,11 @@ impl State {
                 }
             }
         }
-        let whole = |picture: &Arc<render::Picture>| picture.camera == self.camera && picture.progress.step == 1;
-        let there = self.picture.as_ref().is_some_and(whole) && !self.size_px.contains(&0);
+        let there = self.whole_picture().is_some() && !self.size_px.contains(&0);
         if !self.awaits_visits() || !there || self.is_measuring() {
             return;
         }
-        let (Some(of), Some(model), Some(shown)) = (self.visited_view(), &self.model, &self.shown) else { return };
-        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        let whole = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
+        let (Some(of), Some(whole)) = (self.visited_view(), self.traced_view(Mode::Shaded)) else { return };
         let view = render::Job { section: self.section(), ..whole };
         let (pool, size_px) = (self.shared.pool.clone(), self.size_px);
         let job = Job::spawn("visits", self.shared.waker(), move |cancel, progress| {

@@ -1,12 +1,10 @@
 //! Bounding volumes of the selected node side by side: compared in the background, and drawn around it.
 
-use std::sync::Arc;
-
 use super::State;
 use crate::accel::{Cell, CellId};
 use crate::job::Outcome;
 use crate::lab::{FitError, Fitting, can_fit};
-use crate::render::{self, Mode};
+use crate::render::Mode;
 use crate::scene::Camera;
 use crate::viewer::gpu::BoxInstance;
 use crate::viewer::pick::Picked;
@@ -50,14 +48,8 @@ impl State {
 
     /// Starts comparing volumes around the selected node.
     pub(super) fn fit_volumes(&mut self) {
-        if self.is_measuring() || self.is_checking() || self.size_px.contains(&0) {
-            return;
-        }
         let Some(cell) = self.fittable().copied() else { return };
-        let pause = self.begin_measuring();
-        let (Some(model), Some(shown)) = (&self.model, &self.shown) else { return };
-        let (scene, accel) = (Arc::clone(&model.scene), Arc::clone(&shown.accel));
-        let view = render::Job::new(scene, accel, self.camera, Mode::Shaded, Arc::clone(&model.looks));
+        let Some((view, pause)) = self.begin_on_view(Mode::Shaded) else { return };
         (self.fits.asked, self.fits.note) = (Some((cell.id, self.camera)), None);
         match workers::fit_volumes(&self.shared, view, self.size_px, cell, pause) {
             Ok(job) => self.fits.running = Some(job),
