@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::accel::Accel;
 use crate::accel::params::ParamValues;
 use crate::accel::registry::Entry;
 use crate::accel::stats::Stats;
+use crate::accel::{Accel, MemoryPart};
 use crate::geometry::tri::TestKind;
 use crate::lab::Quality;
 use crate::task::Phase;
@@ -42,6 +42,18 @@ pub struct Built {
     pub stats: Option<Arc<Stats>>,
     /// What is predicted of rays, once somebody looked at it.
     pub quality: Option<Arc<Quality>>,
+}
+
+impl Built {
+    /// What its memory is made of.
+    pub fn memory(&self) -> Vec<MemoryPart> {
+        self.stats.as_ref().map_or_else(|| self.accel.memory(), |stats| stats.memory.clone())
+    }
+
+    /// Bytes of all of it.
+    pub fn bytes(&self) -> u64 {
+        self.memory().iter().map(|part| part.bytes).sum()
+    }
 }
 
 impl std::fmt::Debug for Built {

@@ -9,7 +9,7 @@ mod ramp;
 pub use lines::{DASH_PT, LineStyle, PLANE_FILL, PLANE_FILL_HIDDEN};
 pub use marker::Marker;
 pub use palette::{Mark, Palette};
-pub use ramp::{amount_color, depth_color, depth_position, difference, heat_color, viridis};
+pub use ramp::{amount_color, depth_color, heat_color};
 
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme, Vec2, Visuals, style};
 
@@ -37,6 +37,8 @@ pub const LEFT_PANEL: f32 = 232.0;
 pub const RIGHT_PANEL: f32 = 280.0;
 /// The height of the timings below the viewport.
 pub const BOTTOM_PANEL: f32 = 184.0;
+/// The width of a bar that says how far a job is, with its button beside it.
+pub const RUNNING: f32 = 30.0 * GRID;
 /// The height of the plots of errors below the viewport.
 pub const ERROR_PANEL: f32 = 280.0;
 /// The same while pictures are compared, at first.

@@ -156,7 +156,7 @@ impl Timings {
         }
         row.key = Some(built.key.clone());
         row.build_secs = Some(built.build_secs);
-        row.bytes = Some(built.accel.memory().iter().map(|part| part.bytes).sum());
+        row.bytes = Some(built.bytes());
         row.failed = None;
     }
 

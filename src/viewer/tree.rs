@@ -19,7 +19,7 @@ pub struct Tree {
     /// The structure that this is of.
     pub of: Option<Key>,
     /// The list, on its way.
-    pub outlining: Option<(Key, Outlining)>,
+    pub outlining: Option<Outlining>,
     /// Which rows are to be seen.
     pub folding: Folding,
     /// The same as they were at first.

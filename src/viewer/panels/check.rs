@@ -1,8 +1,8 @@
 //! What is known of the cell of the matrix that was clicked, and the check of the open model.
 
-use eframe::egui::{Label, ProgressBar, RichText, Ui};
+use eframe::egui::{Label, RichText, Ui};
 
-use super::{Commands, empty, fact, heading, memory, needs, saves, stability};
+use super::{Commands, empty, fact, heading, memory, needs, running, saves, stability};
 use crate::lab::stability::Row;
 use crate::lab::stability::cases::Case;
 use crate::lab::{Finding, MeshCheck, ModelCheck};
@@ -10,7 +10,7 @@ use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::sheets::What;
 use crate::viewer::state::State;
-use crate::viewer::theme::{self, Palette};
+use crate::viewer::theme::Palette;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -77,13 +77,9 @@ fn button(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
         return;
     };
-    let now = job.progress.snapshot();
-    ui.horizontal(|ui| {
-        if ui.button("Cancel").on_hover_text("Stop the check.").clicked() {
-            commands.push(Command::CancelCheck);
-        }
-        ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(30.0 * theme::GRID).text(now.phase));
-    });
+    if running(ui, &job.progress, job.progress.snapshot().phase, ("Cancel", "Stop the check.")) {
+        commands.push(Command::CancelCheck);
+    }
 }
 
 fn mesh(ui: &mut Ui, mesh: &MeshCheck) {

@@ -1,11 +1,11 @@
 //! The film of the build: where it stands, how it is played, and the SAH cost along it.
 
 use eframe::egui::{
-    Align2, Button, DragValue, Label, Pos2, ProgressBar, Rect, RichText, Role, ScrollArea, Sense, Slider, Stroke, TextStyle, Ui,
-    UiBuilder, WidgetInfo, vec2,
+    Align2, Button, DragValue, Label, Pos2, Rect, RichText, Role, ScrollArea, Sense, Slider, Stroke, TextStyle, Ui, UiBuilder,
+    WidgetInfo, vec2,
 };
 
-use super::{Commands, as_table};
+use super::{Commands, as_table, running};
 use crate::lab::film::{Film, Order, is_reinserted};
 use crate::viewer::actions;
 use crate::viewer::command::Command;
@@ -49,10 +49,7 @@ fn offer(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.horizontal_wrapped(|ui| {
         label(ui);
         if let Some(job) = &state.filming.making {
-            let done = job.progress.snapshot().fraction.unwrap_or(0.0);
-            ui.add(ProgressBar::new(done).desired_width(30.0 * theme::GRID).text("Making"));
-            let cancel = ui.button("Cancel").on_hover_text("Stop making the film.").accessible_name("Cancel the film");
-            if cancel.clicked() {
+            if running(ui, &job.progress, "Making", ("Cancel the film", "Stop making the film.")) {
                 commands.push(Command::CloseFilm);
             }
             return;

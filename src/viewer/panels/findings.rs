@@ -1,14 +1,14 @@
 //! Why rays of this view are slow, in a few sentences, and what each mesh and each material costs.
 
-use eframe::egui::{Button, CollapsingHeader, Grid, Label, ProgressBar, RichText, Ui};
+use eframe::egui::{Button, CollapsingHeader, Grid, Label, RichText, Ui};
 
-use super::{Commands, empty, heading, saves};
+use super::{Commands, empty, heading, running, saves};
 use crate::lab::findings::{Finding, Findings, LooseTriangle, PartCost};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::sheets::What;
 use crate::viewer::state::State;
-use crate::viewer::theme::{self, Palette};
+use crate::viewer::theme::Palette;
 
 /// Meshes or materials that are listed.
 const PARTS: usize = 12;
@@ -17,13 +17,9 @@ const PARTS: usize = 12;
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     heading(ui, "Findings");
     if let Some(job) = &state.causes.running {
-        let now = job.progress.snapshot();
-        ui.horizontal(|ui| {
-            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(30.0 * theme::GRID).text("Looking"));
-            if ui.button("Cancel").on_hover_text("Stop looking.").clicked() {
-                commands.push(Command::CancelCauses);
-            }
-        });
+        if running(ui, &job.progress, "Looking", ("Cancel", "Stop looking.")) {
+            commands.push(Command::CancelCauses);
+        }
         return;
     }
     if let Some(found) = &state.causes.found {

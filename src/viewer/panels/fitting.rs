@@ -1,14 +1,14 @@
 //! Bounding volumes of the selected node side by side.
 
-use eframe::egui::{Button, Grid, ProgressBar, RichText, Ui};
+use eframe::egui::{Button, Grid, RichText, Ui};
 
-use super::{Commands, empty, heading, saves};
+use super::{Commands, empty, heading, running, saves};
 use crate::lab::{FitRow, Fitting};
 use crate::viewer::command::Command;
 use crate::viewer::format;
 use crate::viewer::sheets::What;
 use crate::viewer::state::State;
-use crate::viewer::theme::{self, Palette};
+use crate::viewer::theme::Palette;
 
 /// What a kind of volume is called in tables and lists.
 pub fn volume_name(id: &str) -> &str {
@@ -43,15 +43,9 @@ fn help(id: &str) -> &'static str {
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     heading(ui, "Bounding volumes");
     if let Some(job) = &state.fits.running {
-        let now = job.progress.snapshot();
-        ui.horizontal(|ui| {
-            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(30.0 * theme::GRID).text("Comparing"));
-            let cancel = ui.button("Cancel").accessible_name("Cancel comparing volumes");
-            let cancel = cancel.on_hover_text("Stop comparing volumes.");
-            if cancel.clicked() {
-                commands.push(Command::CancelFitVolumes);
-            }
-        });
+        if running(ui, &job.progress, "Comparing", ("Cancel comparing volumes", "Stop comparing volumes.")) {
+            commands.push(Command::CancelFitVolumes);
+        }
         return;
     }
     let made = state.fitting();

@@ -1,11 +1,10 @@
 //! What a heat map shows: how its amounts are spread, the range of its colours, and the times of tiles.
 
 use eframe::egui::{
-    Button, CursorIcon, DragValue, EventFilter, Id, Key, ProgressBar, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
-    vec2,
+    Button, CursorIcon, DragValue, EventFilter, Id, Key, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::{Commands, as_table, empty, fact, heading};
+use super::{Commands, as_table, empty, fact, heading, running};
 use crate::lab::tile_times::{REPEATS, TILE};
 use crate::render::{Amounts, Histogram, Mode, Picture, Range};
 use crate::viewer::command::Command;
@@ -51,14 +50,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
 /// The times of tiles: how to get them, and what they come to.
 fn tiles(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if let Some((_, job)) = &state.tiles.running {
-        ui.horizontal(|ui| {
-            let share = job.progress.snapshot().fraction.unwrap_or(0.0);
-            ui.add(ProgressBar::new(share).desired_width(30.0 * theme::GRID).text("Timing"));
-            let cancel = ui.button("Cancel").accessible_name("Cancel timing the tiles");
-            if cancel.on_hover_text("Stop timing.").clicked() {
-                commands.push(Command::CancelTiles);
-            }
-        });
+        if running(ui, &job.progress, "Timing", ("Cancel timing the tiles", "Stop timing.")) {
+            commands.push(Command::CancelTiles);
+        }
         return;
     }
     let old = state.tiles_are_old();

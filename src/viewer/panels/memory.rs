@@ -39,14 +39,10 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
         }
         for built in state.kept_structures() {
-            let bytes = built
-                .stats
-                .as_ref()
-                .map_or_else(|| built.accel.memory().iter().map(|part| part.bytes).sum(), |stats| stats.bytes());
             fact(
                 ui,
                 built.key.entry.name,
-                format::bytes(bytes),
+                format::bytes(built.bytes()),
                 "A structure that is kept, so that going back to it costs nothing.",
             );
         }

@@ -52,10 +52,11 @@ pub mod tradeoffs;
 pub mod tree;
 pub mod viewport;
 
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{self, ProgressBar, RichText, Ui};
 
 use super::command::Command;
 use super::theme::{self, Palette};
+use crate::task::Progress;
 
 /// Where panels put what they ask for.
 pub type Commands = Vec<Command>;
@@ -75,6 +76,16 @@ pub fn fact(ui: &mut Ui, name: &str, value: impl Into<String>, help: &str) {
         });
     });
     row.response.on_hover_text(help);
+}
+
+/// How far a job is, in a row with the button that stops it, which screen readers call `name`; true if it was clicked.
+pub fn running(ui: &mut Ui, progress: &Progress, text: &str, (name, help): (&str, &str)) -> bool {
+    let row = ui.horizontal(|ui| {
+        let share = progress.snapshot().fraction.unwrap_or(0.0);
+        ui.add(ProgressBar::new(share).desired_width(theme::RUNNING).text(text));
+        ui.button("Cancel").accessible_name(name).on_hover_text(help).clicked()
+    });
+    row.inner
 }
 
 /// A sentence where there is nothing to show.

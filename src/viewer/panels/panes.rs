@@ -194,24 +194,21 @@ fn name(key: &Key, all: &[Key]) -> String {
 /// The figures beneath a picture.
 fn facts(state: &State, which: usize, names: &[String]) -> String {
     let name = &names[which];
-    let (built, picture, bytes) = match which.checked_sub(1) {
-        None => {
-            let bytes = state.shown.as_ref().and_then(|shown| shown.stats.as_ref()).map(|stats| stats.bytes());
-            (state.shown.as_ref(), state.picture.as_deref(), bytes)
-        }
+    let (built, picture) = match which.checked_sub(1) {
+        None => (state.shown.as_ref(), state.picture.as_deref()),
         Some(other) => {
             let Some(pane) = state.panes.all.get(other) else { return format!("{name}: waits") };
             if let Some(building) = &pane.building {
                 let share = building.job.progress.snapshot().fraction.map(|share| format!(" {}", format::percent(share.into())));
                 return format!("{name}: building{}", share.unwrap_or_default());
             }
-            (pane.built.as_ref(), pane.picture.as_deref(), Some(pane.bytes))
+            (pane.built.as_ref(), pane.picture.as_deref())
         }
     };
     let Some(built) = built else { return format!("{name}: waits to be built") };
     let mut parts: Vec<String> = picture.map(work).into_iter().flatten().collect();
     parts.push(format!("built in {}", format::duration(built.build_secs)));
-    parts.extend(bytes.map(format::bytes));
+    parts.push(format::bytes(built.bytes()));
     format!("{name}: {}", parts.join(", "))
 }
 

@@ -1,8 +1,8 @@
 //! The ray beside its steps: which one it is, how it is played, and which structures trace it.
 
-use eframe::egui::{Button, ComboBox, DragValue, Grid, Key, Label, ProgressBar, RichText, Slider, TextEdit, Ui};
+use eframe::egui::{Button, ComboBox, DragValue, Grid, Key, Label, RichText, Slider, TextEdit, Ui};
 
-use super::{Commands, empty, fact, heading, saves, steps};
+use super::{Commands, empty, fact, heading, running, saves, steps};
 use crate::accel::Step;
 use crate::accel::registry;
 use crate::lab::RayKind;
@@ -12,7 +12,7 @@ use crate::viewer::format;
 use crate::viewer::rays::{KINDS, SPEEDS};
 use crate::viewer::sheets::What;
 use crate::viewer::state::State;
-use crate::viewer::theme::{self, Palette};
+use crate::viewer::theme::Palette;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -86,14 +86,9 @@ fn which(ui: &mut Ui, state: &State, commands: &mut Commands) {
 fn file(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let list = &state.ray_list;
     if let Some(progress) = list.progress() {
-        ui.horizontal(|ui| {
-            let cancel = ui.button("Cancel").accessible_name("Cancel the rays");
-            if cancel.on_hover_text("Stop reading or tracing the rays.").clicked() {
-                commands.push(Command::CancelRays);
-            }
-            let now = progress.snapshot();
-            ui.add(ProgressBar::new(now.fraction.unwrap_or(0.0)).desired_width(30.0 * theme::GRID).text("Rays"));
-        });
+        if running(ui, progress, "Rays", ("Cancel the rays", "Stop reading or tracing the rays.")) {
+            commands.push(Command::CancelRays);
+        }
         return;
     }
     ui.horizontal(|ui| {

@@ -6,7 +6,7 @@ use egui_plot::{Legend, Line, LineStyle, MarkerShape, PlotPoints, Points};
 use super::axes::log_log;
 use super::{Commands, as_table, empty};
 use crate::accel::registry;
-use crate::lab::scaling::{Exponent, Point};
+use crate::lab::scaling::{Exponent, Point, Scaling};
 use crate::viewer::command::Command;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
@@ -50,8 +50,8 @@ pub fn show(ui: &mut Ui, state: &State) {
     }
     let size = vec2((ui.available_width() - theme::GUTTER) * 0.5, ui.available_height() - theme::GRID);
     ui.horizontal_top(|ui| {
-        ui.allocate_ui(size, |ui| plot(ui, state, ("builds", "seconds of a build"), |p| p.build_secs));
-        ui.allocate_ui(size, |ui| plot(ui, state, ("rays", "ns a random line"), |p| p.ray_secs * 1e9));
+        ui.allocate_ui(size, |ui| plot(ui, state, ("builds", "seconds of a build"), |p| p.build_secs, |row| row.build));
+        ui.allocate_ui(size, |ui| plot(ui, state, ("rays", "ns a random line"), |p| p.ray_secs * 1e9, |row| row.ray));
     });
 }
 
@@ -69,7 +69,7 @@ fn table(ui: &mut Ui, state: &State) {
     ScrollArea::vertical().show(ui, |ui| as_table::show(ui, "time against triangles", heads, rows));
 }
 
-fn plot(ui: &mut Ui, state: &State, (id, y): (&str, &str), of: fn(&Point) -> f64) {
+fn plot(ui: &mut Ui, state: &State, (id, y): (&str, &str), of: fn(&Point) -> f64, law: fn(&Scaling) -> Option<Exponent>) {
     let height = ui.available_height();
     let mut seen = Vec::new();
     let mut curves = Vec::new();
@@ -77,7 +77,7 @@ fn plot(ui: &mut Ui, state: &State, (id, y): (&str, &str), of: fn(&Point) -> f64
         let Some(entry) = registry::find(&row.id) else { continue };
         let points = row.points.iter().map(|p| (p.triangles as f64, of(p))).filter(|(n, v)| *n > 0.0 && *v > 0.0);
         let points: Vec<(f64, f64)> = points.collect();
-        let exponent = Exponent::of(points.iter().copied()).map(|e| format!(", N^{}", format::number(e.value)));
+        let exponent = law(row).map(|e| format!(", N^{}", format::number(e.value)));
         // Members of a family have one colour.
         let before = seen.iter().filter(|family| **family == entry.family).count();
         seen.push(entry.family);

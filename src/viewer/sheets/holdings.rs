@@ -1,8 +1,7 @@
 //! What holds how much memory, as it is saved.
 
-use crate::accel::MemoryPart;
 use crate::lab::{Field, Sheet};
-use crate::viewer::kept::{Built, Key};
+use crate::viewer::kept::Key;
 use crate::viewer::state::State;
 
 /// The budget, the model, and each part of the structures that are kept.
@@ -19,16 +18,11 @@ pub fn memory(state: &State) -> Sheet {
         row("model", Field::Missing, "textures", model.looks.textures().bytes());
     }
     for built in state.kept_structures() {
-        for part in parts(built) {
+        for part in built.memory() {
             row(built.key.entry.id, chosen(&built.key).into(), part.name, part.bytes);
         }
     }
     sheet
-}
-
-/// What a structure is made of.
-fn parts(built: &Built) -> Vec<MemoryPart> {
-    built.stats.as_ref().map_or_else(|| built.accel.memory(), |stats| stats.memory.clone())
 }
 
 /// What tells a structure from another of its kind: parameters that are not their defaults, and the triangle test.

@@ -19,10 +19,10 @@ impl State {
     /// Lists the cells of the shown structure where somebody looks at them.
     pub(super) fn advance_outline(&mut self) {
         self.advance_selecting();
-        if let Some((key, job)) = self.tree.outlining.take() {
+        if let Some(job) = self.tree.outlining.take() {
             match job.poll() {
                 Outcome::Running => {
-                    self.tree.outlining = Some((key, job));
+                    self.tree.outlining = Some(job);
                     return;
                 }
                 Outcome::Done(Ok(outline)) => {
@@ -43,7 +43,7 @@ impl State {
             return;
         }
         self.tree.of = Some(shown.key.clone());
-        self.tree.outlining = workers::outline(&self.shared, shown).ok().map(|job| (shown.key.clone(), job));
+        self.tree.outlining = workers::outline(&self.shared, shown).ok();
     }
 
     /// Whether somebody looks at the list of cells, or boxes are drawn by what it says.

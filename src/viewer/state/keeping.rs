@@ -42,7 +42,7 @@ impl State {
         while left > limit
             && let Some(oldest) = self.kept.take_oldest(&self.in_use())
         {
-            left = left.saturating_sub(oldest.accel.memory().iter().map(|part| part.bytes).sum());
+            left = left.saturating_sub(oldest.bytes());
             self.shared.give_back(oldest);
         }
     }

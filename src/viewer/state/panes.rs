@@ -33,8 +33,6 @@ pub struct Panes {
 pub struct Pane {
     /// Its structure, once it is there.
     pub built: Option<Built>,
-    /// The bytes of that.
-    pub bytes: u64,
     /// Its build.
     pub building: Option<Building>,
     /// Its newest picture.
@@ -215,7 +213,7 @@ impl State {
                 }
                 Outcome::Done(Ok(built)) => {
                     self.kept.keep(built.clone());
-                    self.take_up(pane, built);
+                    pane.built = Some(built);
                     None
                 }
                 Outcome::Done(Err(BuildError::Cancelled(_))) => None,
@@ -233,16 +231,11 @@ impl State {
             return true;
         }
         if let Some(built) = self.kept.take_up(key) {
-            self.take_up(pane, built);
+            pane.built = Some(built);
         } else if let Some(model) = &self.model {
             pane.building = workers::build(&self.shared, key.clone(), Arc::clone(&model.geometry)).ok();
         }
         true
-    }
-
-    fn take_up(&self, pane: &mut Pane, built: Built) {
-        pane.bytes = built.accel.memory().iter().map(|part| part.bytes).sum();
-        pane.built = Some(built);
     }
 
     /// What is to be asked for beside what was asked for A.

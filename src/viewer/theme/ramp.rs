@@ -35,16 +35,6 @@ pub fn heat_color(t: f32) -> Color32 {
 /// The darkest that lines can be told on the dark background.
 const LEAST: f32 = 0.35;
 
-/// The colour of a signed difference in -1..=1: blue below, white at 0, orange above.
-pub fn difference(t: f32) -> Color32 {
-    const BLUE: [f32; 3] = [0.13, 0.40, 0.67];
-    const WHITE: [f32; 3] = [0.97, 0.97, 0.97];
-    const ORANGE: [f32; 3] = [0.80, 0.40, 0.05];
-    let t = if t.is_nan() { 0.0 } else { t.clamp(-1.0, 1.0) };
-    let end = if t < 0.0 { BLUE } else { ORANGE };
-    opaque(std::array::from_fn(|k| WHITE[k] + (end[k] - WHITE[k]) * t.abs()))
-}
-
 fn opaque(rgb: [f32; 3]) -> Color32 {
     let [r, g, b] = rgb.map(|v| (v * 255.0).round() as u8);
     Color32::from_rgb(r, g, b)
@@ -76,12 +66,5 @@ mod tests {
         let steps: Vec<f32> = (4..=7).map(|l| depth_position(l, &shown) - depth_position(l - 1, &shown)).collect();
         assert!(steps.iter().all(|s| (s - steps[0]).abs() < 1e-6));
         assert_eq!(depth_color(5, &(5..=5)), opaque(viridis(0.675)));
-    }
-
-    #[test]
-    fn no_difference_is_white() {
-        assert_eq!(difference(0.0), Color32::from_rgb(247, 247, 247));
-        assert!(difference(-1.0).b() > difference(-1.0).r());
-        assert!(difference(1.0).r() > difference(1.0).b());
     }
 }
