@@ -46,7 +46,7 @@ const fn hands(navigation: Navigation) -> [(&'static str, &'static str); 16] {
     [
         (orbit, "Orbit around the model"),
         (pan, "Move the picture"),
-        ("Click", "Say what is there, and mark its leaf; in the Ray workspace follow the ray"),
+        ("Click", "Mark the leaf that is there; in Ray, follow the ray"),
         ("Wheel, pinch", "Zoom to the pointer"),
         ("Arrow keys", "Orbit, when the viewport has the focus"),
         ("+ and -", "Zoom, when the viewport has the focus"),
