@@ -30,6 +30,7 @@ mod wide;
 pub mod would_fit;
 
 pub use build::{BuildCx, BuildError, Fit, Fits};
+pub use bvh::{ID as BVH, Moved, Recorded, Round, recorded as record_reinsertion};
 pub use cell::{Cell, CellId, CellKind, Cells, Form, Level, MemoryPart, Shape, Split};
 pub use hit::{Accepts, AnyHit, Asked, Closest, Filter, Filtered, Hit, Mode, PrimHit, Query};
 pub use instanced::Instanced;

@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 
 use super::kept::Built;
 use super::workers::Shared;
+use crate::accel::BuildCx;
 use crate::accel::outline::Outline;
 use crate::job::Job;
-use crate::lab::film::{Film, FilmError};
+use crate::lab::film::{Film, FilmError, Subject};
 
 /// Events a second.
 pub const SPEEDS: std::ops::RangeInclusive<f32> = 0.1..=10_000.0;
@@ -43,9 +44,10 @@ impl Default for Filming {
 
 /// Starts making the film of a structure, whose cells are listed.
 pub fn make(shared: &Shared, shown: &Built, outline: Arc<Outline>) -> std::io::Result<Making> {
-    let (accel, params, budget) = (Arc::clone(&shown.accel), shown.key.params.clone(), shared.budget.clone());
+    let (accel, key, shared) = (Arc::clone(&shown.accel), shown.key.clone(), shared.clone());
     Job::spawn("film", shared.waker(), move |cancel, progress| {
-        Film::of(accel.as_ref(), outline, &params, (&budget, cancel, progress))
+        let cx = BuildCx::new(cancel.clone(), progress.clone(), shared.pool, shared.budget);
+        Film::of(&Subject { id: key.entry.id, accel: accel.as_ref(), params: &key.params }, outline, &cx)
     })
 }
 

@@ -11,12 +11,12 @@ use std::sync::Arc;
 use super::gpu::{BoxInstance, Overlay, Ruler, View};
 use super::settings::{BoxColor, Levels, OverlaySettings};
 use super::{theme, wires};
-use crate::accel::Accel;
 use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Shape, Split, bounds_in_scene, walk_below};
 use crate::accel::outline::{Outline, Row};
+use crate::accel::{Accel, Moved};
 use crate::geometry::{Aabb, Axis, HalfSpace};
 use crate::lab::Visits;
-use crate::lab::film::Film;
+use crate::lab::film::{Film, Replay, Seen};
 use crate::task::{Cancel, Cancelled};
 use found::{BOX_EDGES, Drawn, Found};
 
@@ -112,7 +112,13 @@ struct Collector<'a> {
 /// # Errors
 /// [`Cancelled`] if asked to stop.
 pub fn collect(accel: &dyn Accel, known: &Known, wanted: &Wanted, cancel: &Cancel) -> Result<Collected, Cancelled> {
-    let (outline, visits, film) = (known.outline.as_deref(), known.visits.as_deref(), known.film.as_deref());
+    let (outline, visits) = (known.outline.as_deref(), known.visits.as_deref());
+    let film = known.film.as_deref().zip(wanted.film_at).map(|(film, at)| film.seen(at));
+    // Nobody counted who enters the cells of the tree that a film begins with.
+    let (accel, visits) = match film {
+        Some(Seen::Cells(_, _, Some(before))) => (before, None),
+        _ => (accel, visits),
+    };
     let resolution = if let Layout::Flat { resolution, .. } = accel.layout() { Some(resolution) } else { None };
     let ruler = Ruler::new(&wanted.view, wanted.size_px);
     let levels = if accel.levels().is_some() { wanted.settings.levels } else { Levels::Through };
@@ -121,18 +127,17 @@ pub fn collect(accel: &dyn Accel, known: &Known, wanted: &Wanted, cancel: &Cance
     let mut collector = Collector { wanted, visits, ruler, resolution, levels, root, found, total, more };
     let mut looked = 0u64;
     let mut stopped = Ok(());
-    let film = film.zip(wanted.film_at);
     let mut visit = |cell: &Cell, at: Option<(&Outline, u32)>| {
         looked += 1;
         if looked.is_multiple_of(CELLS_PER_CHECK) {
             stopped = cancel.check();
         }
         let row = at.map(|(outline, row)| outline.row(row));
-        let whole = film.zip(at).map(|((film, position), (_, row))| film.is_whole(row, position));
+        let whole = film.zip(at).map(|(film, (_, row))| film.is_whole(row));
         if stopped.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(collector.visit(accel, cell, row, whole)) }
     };
     let top = wanted.top.map_or_else(|| accel.root(), |top| top.0);
-    match film.map(|film| film.0.outline()).or(outline.filter(|_| wanted.numbered)) {
+    match film.map(|film| film.outline()).or(outline.filter(|_| wanted.numbered)) {
         Some(outline) => {
             let row = wanted.top.map_or(0, |top| top.1);
             // Whether it broke off is known already.
@@ -142,10 +147,20 @@ pub fn collect(accel: &dyn Accel, known: &Known, wanted: &Wanted, cancel: &Cance
     }
     stopped?;
     let mut collected = collector.finish(accel, cancel)?;
-    if let Some((film, at)) = film {
-        light(accel, film, at, (wanted, cancel), &mut collected)?;
+    match film {
+        Some(Seen::Cells(replay, at, _)) => light(accel, replay, at, (wanted, cancel), &mut collected)?,
+        Some(Seen::Moves(moves, _)) => light_moves(moves, &mut collected.overlay),
+        Some(Seen::Finished(_)) | None => {}
     }
     Ok(collected)
+}
+
+/// Nodes that were moved, with the parents that they had and have.
+fn light_moves(moves: &[Moved], overlay: &mut Overlay) {
+    for moved in moves {
+        let colored = [(&moved.from, theme::MOVED_FROM), (&moved.to, theme::MOVED_TO), (&moved.node, theme::TRIED)];
+        overlay.lit.extend(colored.map(|(bounds, color)| BoxInstance::new(bounds, color.to_array())));
+    }
 }
 
 /// The most parts that a cell is divided into that stand out.
@@ -154,13 +169,13 @@ const MOST_LIT: usize = 32;
 /// The cell that was just divided or merged, and its parts; and the plane between them.
 fn light(
     accel: &dyn Accel,
-    film: &Film,
+    replay: &Replay,
     at: u32,
     (wanted, cancel): (&Wanted, &Cancel),
     collected: &mut Collected,
 ) -> Result<(), Cancelled> {
-    let Some(row) = film.just(at) else { return Ok(()) };
-    let cells = film.outline().cells(accel, row, cancel)?;
+    let Some(row) = replay.just(at) else { return Ok(()) };
+    let cells = replay.outline().cells(accel, row, cancel)?;
     let Some(cell) = cells.last() else { return Ok(()) };
     let mut lit = Vec::new();
     accel.children(cell, &mut |part| {

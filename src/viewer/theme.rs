@@ -53,6 +53,10 @@ pub const RAY_HALO: f32 = 3.0;
 pub const FAINT: f32 = 0.3;
 /// A plane that somebody tries.
 pub const TRIED: Color32 = Color32::from_rgb(255, 255, 255);
+/// The parent that a moved node had, in the film of a build.
+pub const MOVED_FROM: Color32 = Color32::from_rgb(255, 140, 105);
+/// The parent that it has since.
+pub const MOVED_TO: Color32 = Color32::from_rgb(120, 190, 255);
 /// The plane of a section.
 pub const SECTION: Color32 = Color32::from_rgb(242, 177, 52);
 /// A bounding volume that somebody compares with others.

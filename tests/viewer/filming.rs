@@ -147,3 +147,27 @@ fn making_it_is_stopped_and_many_cells_are_told_by_level() {
     let film = w.state().filming.film.clone().expect("made");
     assert!(film.last() < 100 && film.tell(2).starts_with("Level 2 of "), "too many to be told one by one");
 }
+
+#[test]
+fn nodes_that_reinsertion_moved_are_shown_with_their_parents() {
+    let mut w = open("builtin:soup?triangles=200");
+    w.click(Role::DisclosureTriangle, "Parameters");
+    w.step();
+    w.choose("off", "on");
+    w.until("the optimised tree", |s| {
+        s.shown.as_ref().is_some_and(|b| b.key.params.choice("reinsertion") == "on") && s.tree.outline.is_some()
+    });
+    w.settle();
+    make(&mut w);
+    let film = w.state().filming.film.clone().expect("made");
+    assert!(film.has_moves() && w.says(&film.tell(0)));
+    assert!(w.says("The tree was built once more, with one triangle in a leaf, to see which nodes reinsertion moves then."));
+    w.button("End");
+    let leaves = w.state().shown.as_ref().and_then(|shown| shown.stats.clone()).expect("counted").leaves;
+    let (total, lit) = drawn(&mut w);
+    assert_eq!((total as u64, lit), (leaves, 0), "the finished structure");
+    w.button("Back");
+    assert_eq!(drawn(&mut w), (1, 3), "the root, what was moved and its two parents");
+    assert!(w.says(&film.tell(film.last() - 1)) && film.tell(film.last() - 1).starts_with("Reinsertion "));
+    assert!(w.says("White: what was moved. Orange: its parent before, which is gone. Blue: its parent since."));
+}

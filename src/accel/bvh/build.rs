@@ -10,7 +10,7 @@ use super::draft::Draft;
 use super::lbvh::Curve;
 use super::median::{ObjectMedian, SpatialMiddle};
 use super::preset::Builder;
-use super::reinsertion::{self, Patience};
+use super::reinsertion::{self, Log, Patience, Round};
 use super::sbvh::{self, Sbvh, Work};
 use super::slice::{Heuristic, InPlace, Slice};
 use super::subtree::Subtree;
@@ -161,13 +161,53 @@ impl Plan {
 /// # Errors
 /// Cancelled, or over the memory budget.
 pub fn build(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<Built, BuildError> {
-    let Drafted { draft, splits, remarks, peak } = draft(geometry, p, Auto::Whole, cx)?;
+    packed(geometry, draft(geometry, p, Auto::Whole, cx)?, cx)
+}
+
+fn packed(geometry: &Arc<Geometry>, drafted: Drafted, cx: &BuildCx) -> Result<Built, BuildError> {
+    let Drafted { draft, splits, remarks, peak } = drafted;
     cx.progress.start("pack", draft.refs.len() as u64);
     let packed = draft.pack(geometry, cx)?;
     drop(peak);
     let bytes = draft.nodes.capacity() * size_of::<Node>() + size_of_val(&packed[..]);
     let charge = cx.budget.charge(bytes as u64).map_err(too_large)?;
     Ok(Built { geometry: Arc::clone(geometry), nodes: draft.nodes, packed, splits, remarks, _charge: charge })
+}
+
+/// How a tree came to be whose nodes were moved once it was built.
+#[derive(Debug)]
+pub struct Recorded {
+    /// The tree before, with one triangle in a leaf.
+    pub before: Built,
+    /// What was moved, round by round; nothing if it gained nothing and was undone.
+    pub rounds: Vec<Round>,
+    /// Nodes of the finished tree.
+    pub nodes: usize,
+}
+
+/// Builds the tree anew and watches its nodes being moved, keeping at most so many moves of each round; nothing if the parameters
+/// do not ask for that.
+///
+/// # Errors
+/// Cancelled, or over the memory budget.
+pub fn recorded(geometry: &Arc<Geometry>, p: &ParamValues, most: usize, cx: &BuildCx) -> Result<Option<Recorded>, BuildError> {
+    let n = geometry.live_count();
+    let mut plan = Plan::of(p, n);
+    if n == 0 || plan.reinsertion.is_none() {
+        return Ok(None);
+    }
+    let peak = cx.budget.charge(plan.peak_bytes(n) + Log::bytes(most) as u64).map_err(too_large)?;
+    cx.progress.start("bound", n as u64);
+    let divided = plan.divided(geometry, prim_boxes(geometry, cx)?, cx)?;
+    let copy = Draft { nodes: divided.nodes.clone(), refs: divided.refs.clone() };
+    let mut log = Log::new(most);
+    let moved = plan.reinserted(divided, Some(&mut log), cx)?;
+    let nodes = moved.arranged(geometry, &plan.costs, plan.limits, cx)?.nodes.len();
+    let one_each = Limits { max_leaf: 1, max_depth: MAX_DEPTH };
+    let draft = copy.arranged(geometry, &plan.costs, one_each, cx)?;
+    let splits = plan.builder == Builder::Sbvh;
+    let before = packed(geometry, Drafted { draft, splits, remarks: plan.remarks, peak }, cx)?;
+    Ok(Some(Recorded { before, rounds: log.rounds, nodes }))
 }
 
 /// A tree over boxes, one in a leaf, whatever is in them; leaves refer to them by their index.
@@ -198,7 +238,17 @@ fn too_large(over: OverBudget) -> BuildError {
 }
 
 impl Plan {
-    fn draft(&mut self, geometry: &Geometry, mut prims: Vec<PrimBox>, cx: &BuildCx) -> Result<Draft, BuildError> {
+    fn draft(&mut self, geometry: &Geometry, prims: Vec<PrimBox>, cx: &BuildCx) -> Result<Draft, BuildError> {
+        let draft = self.divided(geometry, prims, cx)?;
+        if !self.needs_leaves() {
+            return Ok(draft);
+        }
+        let draft = self.reinserted(draft, None, cx)?;
+        draft.arranged(geometry, &self.costs, self.limits, cx)
+    }
+
+    /// What the builder makes, before any pass over it.
+    fn divided(&self, geometry: &Geometry, mut prims: Vec<PrimBox>, cx: &BuildCx) -> Result<Draft, BuildError> {
         cx.progress.start("split", prims.len() as u64);
         let limits = self.build_limits();
         let binned = Binned { bins: self.bins, costs: self.costs };
@@ -224,20 +274,15 @@ impl Plan {
         }?;
         // Before the nodes exist twice.
         drop(prims);
-        let draft = cx.pool.run(|| tree.joined(&cx.cancel))?;
-        if !self.needs_leaves() {
-            return Ok(draft);
-        }
-        let draft = self.reinserted(draft, cx)?;
-        draft.arranged(geometry, &self.costs, self.limits, cx)
+        Ok(cx.pool.run(|| tree.joined(&cx.cancel))?)
     }
 
     /// The optimised tree, unless its SAH cost is higher once leaves are chosen: the pass looks at
-    /// areas only.
-    fn reinserted(&mut self, draft: Draft, cx: &BuildCx) -> Result<Draft, BuildError> {
+    /// areas only. A log of what was undone is empty.
+    fn reinserted(&mut self, draft: Draft, mut log: Option<&mut Log>, cx: &BuildCx) -> Result<Draft, BuildError> {
         let Some(patience) = self.reinsertion else { return Ok(draft) };
         let mut better = Draft { nodes: draft.nodes.clone(), refs: draft.refs.clone() };
-        reinsertion::optimise(&mut better, patience, cx)?;
+        reinsertion::optimise(&mut better, patience, log.as_deref_mut(), cx)?;
         let cost = |draft: &Draft| draft.cost(&self.costs, self.limits.max_leaf, cx);
         let (before, after) = (cost(&draft)?, cost(&better)?);
         let kept = after <= before;
@@ -245,6 +290,9 @@ impl Plan {
         let text =
             if kept { format!("it lowered the SAH cost by {share:.1} %") } else { "undone, since it gained nothing".to_owned() };
         self.remarks.push(format!("Reinsertion: {text}."));
+        if let Some(log) = log.filter(|_| !kept) {
+            log.rounds.clear();
+        }
         Ok(if kept { better } else { draft })
     }
 }

@@ -45,6 +45,17 @@ impl Draft {
         if inner > 0.0 { shared / inner } else { 0.0 }
     }
 
+    /// References to triangles below a node.
+    pub fn references(&self, at: u32) -> u32 {
+        let (mut references, mut open) = (0, vec![at]);
+        while let Some(at) = open.pop() {
+            let node = &self.nodes[at as usize];
+            references += node.count();
+            open.extend(node.left().into_iter().flat_map(|left| [left, left + 1]));
+        }
+        references
+    }
+
     /// The packed triangles in the order of the leaves.
     pub fn pack(&self, geometry: &Geometry, cx: &BuildCx) -> Result<Vec<Packed>, BuildError> {
         in_chunks(self.refs.len(), cx, |i| Packed { corners: geometry.corners(self.refs[i]), prim: self.refs[i] })

@@ -27,18 +27,19 @@ mod tree;
 
 pub use build::{Auto, Drafted, bytes_over_boxes, over_boxes};
 pub use draft::Draft;
+pub use reinsertion::{Moved, Round};
 pub use tree::{Built, MAX_DEPTH, Node, Packed};
 
 use std::sync::Arc;
 
 use super::params::{C_ISECT, C_TRAV, Kind, Param, ParamValues};
 use super::{Accel, BuildCx, BuildError};
-use crate::geometry::tri::TriTest;
+use crate::geometry::tri::{TriTest, Watertight};
 use crate::scene::Geometry;
 use tree::Bvh;
 
 /// The name it is registered by.
-const ID: &str = "bvh";
+pub const ID: &str = "bvh";
 
 /// What can be set.
 pub const PARAMS: &[Param] = &[
@@ -139,6 +140,30 @@ pub fn tree(geometry: &Arc<Geometry>, p: &ParamValues, cx: &BuildCx) -> Result<B
 /// The same before it is packed, for structures that pack it in their own way.
 pub fn draft(geometry: &Geometry, p: &ParamValues, auto: Auto, cx: &BuildCx) -> Result<Drafted, BuildError> {
     build::draft(geometry, &completed(p), auto, cx)
+}
+
+/// How a tree came to be whose nodes were moved once it was built.
+pub struct Recorded {
+    /// The tree before, with one triangle in a leaf.
+    pub before: Box<dyn Accel>,
+    /// What was moved, round by round; nothing if it gained nothing and was undone.
+    pub rounds: Vec<Round>,
+    /// Nodes of the finished tree, from which it is seen whether it is the one that was built before.
+    pub nodes: usize,
+}
+
+/// Builds the tree anew and watches its nodes being moved by reinsertion, keeping at most so many moves of each round; nothing if the
+/// parameters do not ask for that.
+///
+/// # Errors
+/// Cancelled, or over the memory budget.
+pub fn recorded(geometry: &Arc<Geometry>, p: &ParamValues, most: usize, cx: &BuildCx) -> Result<Option<Recorded>, BuildError> {
+    let recorded = build::recorded(geometry, p, most, cx)?;
+    Ok(recorded.map(|build::Recorded { before, rounds, nodes }| {
+        // Nobody traces it: any road over its nodes will do.
+        let before = Box::new(Bvh::<Watertight, true, true>::new(before));
+        Recorded { before, rounds, nodes }
+    }))
 }
 
 fn completed(p: &ParamValues) -> ParamValues {

@@ -38,8 +38,55 @@ const CHUNK: usize = 1 << 8;
 /// where all boxes overlap it would visit the whole tree.
 const STEPS: usize = 4096;
 
+/// A move that was made. Boxes are in the space that the tree is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moved {
+    /// The node that was moved.
+    pub node: Aabb,
+    /// What is below it: references to triangles.
+    pub references: u32,
+    /// Its parent before, which is gone.
+    pub from: Aabb,
+    /// Its parent since, which was made for it.
+    pub to: Aabb,
+    /// The area that was saved, of all inner nodes together.
+    pub gain: f64,
+}
+
+/// What one round did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Round {
+    /// Moves that were made.
+    pub made: u32,
+    /// The area that they saved together.
+    pub gain: f64,
+    /// The first of them: in the order in which they were made, which is that of what they promised to gain.
+    pub moves: Vec<Moved>,
+}
+
+/// Keeps what is moved, for those who want to see it.
+#[derive(Clone, Debug)]
+pub struct Log {
+    /// Round by round; those that moved nothing are left out.
+    pub rounds: Vec<Round>,
+    /// The most moves of a round that are kept one by one.
+    most: usize,
+}
+
+impl Log {
+    /// Keeps so many moves of a round at most; the others are counted.
+    pub const fn new(most: usize) -> Self {
+        Self { rounds: Vec::new(), most }
+    }
+
+    /// What it takes at most.
+    pub const fn bytes(most: usize) -> usize {
+        ROUNDS * most * size_of::<Moved>()
+    }
+}
+
 /// Moves nodes until it pays no more; returns the share of the sum of areas that was saved.
-pub fn optimise(draft: &mut Draft, patience: Patience, cx: &BuildCx) -> Result<f64, BuildError> {
+pub fn optimise(draft: &mut Draft, patience: Patience, mut log: Option<&mut Log>, cx: &BuildCx) -> Result<f64, BuildError> {
     cx.progress.start("reinsert", ROUNDS as u64);
     let start = Instant::now();
     let mut tree = Tree::new(draft);
@@ -50,7 +97,10 @@ pub fn optimise(draft: &mut Draft, patience: Patience, cx: &BuildCx) -> Result<f
             break;
         }
         let moves = tree.moves(cx)?;
-        tree.make(&moves);
+        let round = tree.make(&moves, log.as_ref().map_or(0, |log| log.most));
+        if let Some(log) = log.as_deref_mut().filter(|_| round.made > 0) {
+            log.rounds.push(round);
+        }
         let now = tree.sum_of_areas();
         cx.progress.advance(1);
         let gained = (sum - now) / sum;
@@ -176,8 +226,9 @@ impl<'a> Tree<'a> {
         (best.to != 0).then_some(best)
     }
 
-    /// Makes the moves that touch no node of a better one, and still gain after those before them.
-    fn make(&mut self, moves: &[Move]) {
+    /// Makes the moves that touch no node of a better one, and still gain after those before them; tells the first of them.
+    fn make(&mut self, moves: &[Move], most: usize) -> Round {
+        let mut round = Round::default();
         let mut touched = vec![false; self.draft.nodes.len()];
         for m in moves {
             let parent = self.parent(m.node);
@@ -185,12 +236,20 @@ impl<'a> Tree<'a> {
                 continue;
             }
             let concerned = [m.node, sibling(m.node), parent, m.to, self.parent(m.to), sibling(parent), self.parent(parent)];
-            if concerned.iter().any(|n| touched[*n as usize]) || self.gain(m.node, m.to).is_none_or(|gain| gain <= 0.0) {
+            if concerned.iter().any(|n| touched[*n as usize]) {
                 continue;
             }
+            let Some(gain) = self.gain(m.node, m.to).filter(|gain| *gain > 0.0) else { continue };
             concerned.into_iter().for_each(|n| touched[n as usize] = true);
+            (round.made, round.gain) = (round.made + 1, round.gain + gain);
+            if round.moves.len() < most {
+                let [node, from, to] = [m.node, parent, m.to].map(|n| self.bounds(n));
+                let references = self.draft.references(m.node);
+                round.moves.push(Moved { node, references, from, to: to.union(node), gain });
+            }
             self.reinsert(m.node, m.to);
         }
+        round
     }
 
     /// What a move saves in the tree as it is; `None` if the place is above the node or below it.

@@ -6,7 +6,7 @@ use eframe::egui::{
 };
 
 use super::{Commands, as_table, running};
-use crate::lab::film::{Film, Order, is_reinserted};
+use crate::lab::film::{Film, Order, Seen, Subject, is_reinserted};
 use crate::viewer::actions;
 use crate::viewer::command::Command;
 use crate::viewer::filming::SPEEDS;
@@ -33,8 +33,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         let as_table = title(ui, film, commands);
         player(ui, state, commands);
         ui.add(Label::new(film.tell(at)).wrap());
-        if state.shown.as_ref().is_some_and(|shown| is_reinserted(&shown.key.params)) {
-            let text = "Then reinsertion moved nodes: which ones, the finished tree does not say.";
+        if let Some(text) = about_moves(state, film, at) {
             ui.add(Label::new(RichText::new(text).small().color(Palette::in_ui(ui).dim)).wrap());
         }
         if as_table {
@@ -42,6 +41,20 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         }
     });
     plot(ui, right, film, at, commands);
+}
+
+/// What is to be known of nodes that are moved once the tree is built.
+fn about_moves(state: &State, film: &Film, at: u32) -> Option<&'static str> {
+    let shown = state.shown.as_ref().filter(|shown| is_reinserted(&shown.key.params))?;
+    let subject = Subject { id: shown.key.entry.id, accel: shown.accel.as_ref(), params: &shown.key.params };
+    Some(match film.seen(at) {
+        Seen::Moves(..) => "White: what was moved. Orange: its parent before, which is gone. Blue: its parent since.",
+        _ if film.has_moves() => {
+            "The tree was built once more, with one triangle in a leaf, to see which nodes reinsertion moves then."
+        }
+        _ if !subject.has_moves() => "Then reinsertion moved nodes: it can be seen of the BVH of a model in one level.",
+        _ => "Then reinsertion was tried, and undone since it gained nothing.",
+    })
 }
 
 /// The way to a film.
