@@ -17,6 +17,7 @@ use super::panels::{self, Commands};
 use super::screenshot::Screenshot;
 use super::settings::{Settings, ThemeChoice, Workspace};
 use super::state::State;
+use super::tessellation::Tessellation;
 use super::theme::{self, Palette};
 use super::tour;
 use super::workers::Shared;
@@ -37,6 +38,8 @@ pub struct App {
     pace: Pace,
     /// How long this thread has worked for the present frame, besides having it drawn.
     own_work: Duration,
+    /// What it takes to draw that in triangles, in a run that reports its pace.
+    tessellation: Option<Tessellation>,
     /// Where the panels were last drawn, and in which layer, in the order of the keys.
     panels: Vec<(LayerId, Rect)>,
     /// Grows when the layout is reset: panels forget their sizes with their names.
@@ -91,6 +94,7 @@ impl App {
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
         let layout = if options.is_scripted() { SCRIPTED } else { 0 };
         let animation = options.animate.clone().map(Animation::new);
+        let tessellation = options.pace.then(|| Tessellation::watch(&cc.egui_ctx));
         let app = Self {
             state,
             commands: Vec::new(),
@@ -98,6 +102,7 @@ impl App {
             animation,
             pace: Pace::default(),
             own_work: Duration::ZERO,
+            tessellation,
             panels: Vec::new(),
             layout,
         };
@@ -295,7 +300,8 @@ impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
         let start = thread_time();
         if !is_repeated(ctx) {
-            self.pace.own_work(std::mem::take(&mut self.own_work));
+            let tessellated = self.tessellation.as_ref().map_or(Duration::ZERO, Tessellation::take);
+            self.pace.own_work(std::mem::take(&mut self.own_work) + tessellated);
             self.take_dropped(ctx);
             panels::menu::keys(ctx, &self.state, &mut self.commands);
             panels::focus::dividers(ctx);

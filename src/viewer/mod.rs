@@ -41,6 +41,7 @@ pub mod settings;
 pub mod sheets;
 mod shown;
 pub mod state;
+mod tessellation;
 pub mod theme;
 pub mod tiles;
 pub mod timings;

@@ -24,7 +24,7 @@ pub struct Pace {
     longest: f64,
     /// Frames drawn.
     frames: u64,
-    /// The longest that the window's thread worked for a frame besides having it drawn.
+    /// The longest that the window's thread worked for a frame, tessellation included, besides having it drawn.
     own_longest: Duration,
     /// Frames for which it worked longer than [`LATE`].
     own_late: u64,
@@ -82,7 +82,7 @@ impl Pace {
         let first = self.first.map(|a| format!("first picture (1/{} resolution) {} later; ", a.step, format::duration(a.secs)));
         let full = self.full.map(|secs| format!("one sample a pixel after {}; ", format::duration(secs)));
         let frames = format!(
-            "longest frame {} while loading or building, {} in all, of {}; work of the window's thread besides drawing {} at most, {} or less in 99 % of them, more than 16 ms in {}{}",
+            "longest frame {} while loading or building, {} in all, of {}; work of the window's thread, tessellation included, {} at most, {} or less in 99 % of them, more than 16 ms in {}{}",
             format::duration(self.longest_busy),
             format::duration(self.longest),
             format::count(self.frames),
