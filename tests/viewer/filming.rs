@@ -151,9 +151,11 @@ fn making_it_is_stopped_and_many_cells_are_told_by_level() {
 #[test]
 fn nodes_that_reinsertion_moved_are_shown_with_their_parents() {
     let mut w = open("builtin:soup?triangles=200");
+    w.button("View workspace");
     w.click(Role::DisclosureTriangle, "Parameters");
     w.step();
     w.choose("off", "on");
+    w.button("Structure workspace");
     w.until("the optimised tree", |s| {
         s.shown.as_ref().is_some_and(|b| b.key.params.choice("reinsertion") == "on") && s.tree.outline.is_some()
     });
