@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use boxwood::accel::cell::{Cell, CellKind, Descend, walk, walk_below};
-use boxwood::accel::visibility::{Change, Visibility, VisibilityError};
+use boxwood::accel::visibility::{Change, Visibility, VisibilityError, Written};
 use boxwood::accel::{self, Accel, Filter, Hit, registry};
 use boxwood::geometry::tri::TestKind;
 use boxwood::render::{Film, Job, Mode, Until, render};
@@ -163,31 +163,40 @@ fn hidden_triangles_are_hidden_in_every_structure_and_from_every_ray() {
     }
 }
 
-#[test]
-fn places_of_a_mesh_are_hidden_one_by_one() {
+/// A mesh that stands in five places, and one that stands in one.
+fn placed_scene() -> Scene {
     let [mesh, single] = [ball(8), soup(40, 0.4, 3)].map(|triangles| scene_of(&triangles).meshes.remove(0));
     let placed = |i: u8| {
         let at = Vec3::new(f32::from(i) * 2.5, f32::from(i % 2), 0.0);
         Instance { mesh: 0, world_from_object: Affine3A::from_rotation_translation(Quat::from_rotation_y(f32::from(i)), at) }
     };
     let instances = (0..5).map(placed).chain([Instance::identity(1)]).collect();
-    let scene = Scene { meshes: vec![mesh, single], instances, up: Vec3::Y, ..Scene::default() };
+    Scene { meshes: vec![mesh, single], instances, up: Vec3::Y, ..Scene::default() }
+}
+
+/// Cells of both levels: the first of the upper, some roots below it, and what is below those.
+fn cells_of_both(accel: &dyn Accel) -> Vec<Cell> {
+    let mut some: Vec<Cell> = cells(accel, 4);
+    walk(accel, &mut |cell| {
+        let below = cell.id.instance > 0 && cell.is_leaf() && !held(accel, cell).is_empty();
+        if below && some.len() < 12 {
+            some.push(*cell);
+        }
+        ControlFlow::Continue(Descend::Yes)
+    });
+    assert!(some.iter().any(|cell| cell.id.instance > 0));
+    some
+}
+
+#[test]
+fn places_of_a_mesh_are_hidden_one_by_one() {
+    let scene = placed_scene();
     let geometry = Arc::new(Geometry::with_instances(&scene, &LoadCx::unattended()).expect("small"));
     assert!(geometry.placed().is_some());
     for id in ["bvh", "kdtree", "brute"] {
         let accel = built(&geometry, id);
         let all = held(accel.as_ref(), &accel.root());
-        // Of both levels: the first of the upper, some roots below it, and what is below those.
-        let mut some: Vec<Cell> = cells(accel.as_ref(), 4);
-        walk(accel.as_ref(), &mut |cell| {
-            let below = cell.id.instance > 0 && cell.is_leaf() && !held(accel.as_ref(), cell).is_empty();
-            if below && some.len() < 12 {
-                some.push(*cell);
-            }
-            ControlFlow::Continue(Descend::Yes)
-        });
-        assert!(some.iter().any(|cell| cell.id.instance > 0));
-        for cell in some {
+        for cell in cells_of_both(accel.as_ref()) {
             let of_cell = held(accel.as_ref(), &cell);
             let sees = |visible: &Visibility| -> Triangles {
                 all.iter().copied().filter(|(instance, primitive)| visible.sees(&geometry, *instance, *primitive)).collect()
@@ -241,4 +250,89 @@ fn it_says_why_nothing_can_be_hidden() {
         let nothing = Visibility::change(None, grid.as_ref(), (&cell, Change::Hide), &Budget::unlimited(), &Cancel::new());
         assert_eq!(nothing.err(), Some(VisibilityError::Empty));
     }
+}
+
+/// The triangles that are seen, of all.
+fn seen(visible: &Visibility, geometry: &Geometry) -> Triangles {
+    let all = (0..geometry.instance_end()).flat_map(|i| (0..geometry.count_of(i) as u32).map(move |p| (i, p)));
+    all.filter(|(instance, primitive)| visible.sees(geometry, *instance, *primitive)).collect()
+}
+
+/// What is read of a set that was written to a file.
+fn read(written: &Written, geometry: &Arc<Geometry>) -> Result<Visibility, VisibilityError> {
+    let text = serde_json::to_string(written).expect("plain data");
+    let written = serde_json::from_str(&text).expect("just written");
+    Visibility::read(&written, geometry, &Budget::unlimited(), &Cancel::new())
+}
+
+fn written(visible: &Visibility, geometry: &Geometry) -> Written {
+    visible.written(geometry, &Cancel::new()).expect("not cancelled")
+}
+
+#[test]
+fn what_is_hidden_is_written_down_and_read_again() {
+    let flat = geometry_of(&scene_of(&soup(200, 0.4, 9)));
+    let ball = geometry_of(&scene_of(&ball(10)));
+    let placed = Arc::new(Geometry::with_instances(&placed_scene(), &LoadCx::unattended()).expect("small"));
+    let flattened = geometry_of(&placed_scene());
+    for (geometry, other) in [(&flat, None), (&ball, None), (&placed, Some(&flattened)), (&flattened, Some(&placed))] {
+        for id in ["bvh", "kdtree", "grid"] {
+            let accel = built(geometry, id);
+            let two_levels = geometry.placed().is_some();
+            let some = if two_levels { cells_of_both(accel.as_ref()) } else { cells(accel.as_ref(), 8) };
+            let mut before: Option<Arc<Visibility>> = None;
+            for (i, cell) in some.iter().enumerate() {
+                // What is hidden grows, and begins anew with every third cell.
+                let which = if i % 3 == 0 { Change::Isolate } else { Change::Hide };
+                let visible = change(before.as_deref(), accel.as_ref(), cell, which);
+                let file = written(&visible, geometry);
+                let again = read(&file, geometry).expect("of this scene");
+                assert!(again != *visible && again.is_of(geometry), "a set of its own");
+                assert_eq!(again.count(), visible.count());
+                assert!(seen(&again, geometry) == seen(&visible, geometry), "{id}, {:?}", cell.id);
+                assert_eq!(written(&again, geometry), file);
+                // Instances that are flattened, or no longer, hold the same triangles.
+                if let Some(other) = other {
+                    let there = read(&file, other).expect("as many triangles");
+                    assert!(seen(&there, other) == seen(&visible, geometry), "{id}, {:?}", cell.id);
+                }
+                before = Some(visible);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_written_of_hidden_triangles_is_short_and_checked() {
+    let geometry = geometry_of(&scene_of(&soup(200, 0.4, 9)));
+    let accel = built(&geometry, "bvh");
+    let text = |which| {
+        let visible = change(None, accel.as_ref(), &accel.root(), which);
+        serde_json::to_string(&written(&visible, &geometry)).expect("plain data")
+    };
+    assert_eq!(text(Change::Hide), r#"{"of":200,"runs":"0 200"}"#);
+    assert_eq!(text(Change::Isolate), r#"{"of":200,"runs":"200"}"#);
+    let of = |text: &str| serde_json::from_str::<Written>(text).expect("as it is written");
+    let (budget, cancel) = (Budget::of_mib(1), Cancel::new());
+    let read = |runs: &str| {
+        let file = of(&format!(r#"{{"of":200,"runs":"{runs}"}}"#));
+        Visibility::read(&file, &geometry, &budget, &cancel).map(|visible| visible.count())
+    };
+    assert_eq!(read("10 20 0 30 140"), Ok(50));
+    assert_eq!(read(" 150  50 "), Ok(50));
+    for runs in ["", "199", "201", "10 20", "200 1", "200 0", "10 x 190", "-10 210", "1.5 198.5", "99999999999999999999", "0 0 0"]
+    {
+        assert_eq!(read(runs), Err(VisibilityError::Damaged), "{runs}");
+    }
+    assert_eq!(budget.used(), 0, "what was not read takes nothing");
+    let other = Visibility::read(&of(r#"{"of":199,"runs":"0 199"}"#), &geometry, &budget, &cancel);
+    assert_eq!(other.err(), Some(VisibilityError::OfAnother { of: 199, has: 200 }));
+    let whole = of(r#"{"of":200,"runs":"0 200"}"#);
+    let none = Visibility::read(&whole, &geometry, &Budget::new(0), &cancel);
+    assert!(matches!(none, Err(VisibilityError::Memory(_))));
+    let visible = Visibility::read(&whole, &geometry, &budget, &cancel).expect("fits");
+    assert!(budget.used() > 0);
+    cancel.cancel();
+    assert!(visible.written(&geometry, &cancel).is_err());
+    assert!(matches!(Visibility::read(&whole, &geometry, &budget, &cancel), Err(VisibilityError::Cancelled(_))));
 }

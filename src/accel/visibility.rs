@@ -4,6 +4,10 @@
 //! seen, or hidden, as a whole: bits for every triangle of every place would be as large as the flattened scene. Only a place
 //! of which a part is hidden has bits of its own.
 
+mod written;
+
+pub use written::Written;
+
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -51,6 +55,17 @@ pub enum VisibilityError {
     /// It was stopped.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// They were written down of another scene.
+    #[error("they were hidden in a model of {of} triangles, and this one has {has}")]
+    OfAnother {
+        /// Triangles of that scene.
+        of: u64,
+        /// Triangles of this one.
+        has: u64,
+    },
+    /// What was written down is not whole.
+    #[error("the list of them is damaged")]
+    Damaged,
 }
 
 /// Numbers, a bit for each.

@@ -30,7 +30,7 @@ pub struct Contestant {
 }
 
 /// On which terms structures are compared. Every table says which.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fairness {
     /// Plain code that every processor runs, one ray at a time, the same triangle test: what is compared

@@ -256,6 +256,11 @@ impl Geometry {
         self.owners.count(instance).or_else(|| placed().map(|part| part.triangle_count())).unwrap_or(0)
     }
 
+    /// One more than the last instance that has triangles, flattened or where they stand.
+    pub fn instance_end(&self) -> u32 {
+        self.owners.end().max(self.placed.as_ref().map_or(0, Placed::instance_end))
+    }
+
     /// How many triangles the whole scene has.
     pub fn counts(&self) -> Counts {
         let (triangles, live) = (self.triangles.len() as u64, self.live_count() as u64);

@@ -186,6 +186,12 @@ impl Placed {
         self.places.get(self.by_instance[at] as usize)
     }
 
+    /// One more than the last instance that has a place.
+    pub fn instance_end(&self) -> u32 {
+        let last = self.by_instance.last().and_then(|place| self.places.get(*place as usize));
+        last.map_or(0, |place| place.instance + 1)
+    }
+
     /// How many triangles all places together have.
     pub const fn counts(&self) -> &Counts {
         &self.counts

@@ -55,6 +55,12 @@ impl Owners {
         Some((self.starts[at + 1].first - self.starts[at].first) as usize)
     }
 
+    /// One more than the last instance that was flattened; 0 if none was.
+    pub fn end(&self) -> u32 {
+        // The last entry is nobody's.
+        self.starts.iter().nth_back(1).map_or(0, |start| start.instance + 1)
+    }
+
     #[inline]
     fn at(&self, instance: u32) -> Option<usize> {
         // Where all were flattened it stands at its own number. The last entry is nobody's.
@@ -105,7 +111,8 @@ mod tests {
             assert_eq!(owners.flat(instance, primitive), Some(prim));
         }
         assert!(counts.iter().all(|(i, n)| owners.count(*i) == Some(*n)) && owners.count(1).is_none());
-        assert_eq!((owners.flat(1, 0), owners.flat(10, 0)), (None, None));
-        assert_eq!(Owners::new(std::iter::empty()).flat(0, 0), None);
+        assert_eq!((owners.flat(1, 0), owners.flat(10, 0), owners.end()), (None, None, 10));
+        let none = Owners::new(std::iter::empty());
+        assert_eq!((none.flat(0, 0), none.end()), (None, 0));
     }
 }

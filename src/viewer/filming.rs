@@ -28,7 +28,7 @@ pub struct Filming {
     pub making: Option<Making>,
     /// Why there is none, in words for the user.
     pub failed: Option<String>,
-    /// How many of its events have happened.
+    /// How many of its events have happened; of a film on its way, how many will have when it is first seen.
     pub at: u32,
     /// When the last event was played, while it plays.
     pub playing: Option<Instant>,
@@ -88,9 +88,15 @@ impl Filming {
         (!end).then(|| event.max(FRAME))
     }
 
-    /// Takes in a film, at its start.
+    /// Takes in a film, at the position that was asked for.
     pub fn made(&mut self, film: Film) {
-        *self = Self { film: Some(Arc::new(film)), speed: self.speed, ..Self::default() };
+        *self = Self { film: Some(Arc::new(film)), speed: self.speed, at: self.at, ..Self::default() };
+        self.go(self.at);
+    }
+
+    /// The position, if there is a film or one is on its way.
+    pub fn place(&self) -> Option<u32> {
+        (self.film.is_some() || self.making.is_some()).then_some(self.at)
     }
 
     /// Puts the film away, or the work on it, and returns it: it may be large.

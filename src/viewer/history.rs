@@ -104,7 +104,7 @@ pub struct Choices {
     panes: PaneSettings,
     /// Which triangles are seen, if not all.
     #[serde(skip)]
-    visible: Option<Arc<Visibility>>,
+    pub visible: Option<Arc<Visibility>>,
     /// What is selected.
     #[serde(skip)]
     pub picked: Option<Picked>,

@@ -7,7 +7,7 @@ use std::sync::mpsc::Receiver;
 use super::kept::{Built, Key};
 use super::workers::Shared;
 use crate::accel::stats::SahWeights;
-use crate::geometry::Ray;
+use crate::geometry::{Ray, num};
 use crate::job::Job;
 use crate::lab::ray_file::{self, RayFile, RayWork, dearest_first, work};
 use crate::task::{Cancel, Cancelled, Charge, Progress};
@@ -32,14 +32,28 @@ pub struct RayList {
     pub moved: u64,
     /// A file to read once a model is open.
     pub awaited: Option<PathBuf>,
+    /// The file that is awaited or read belongs to a workspace file, which says what is looked at.
+    pub brought: Option<Brought>,
+    /// The number of the ray that is followed, until its row is known.
+    pub followed: Option<u32>,
     /// The answer of the dialog.
     pub asked: Option<Receiver<Option<PathBuf>>>,
+}
+
+/// What a workspace file says of its file of rays.
+pub struct Brought {
+    /// Its path.
+    pub path: PathBuf,
+    /// The number of the ray that is followed.
+    pub followed: Option<u32>,
 }
 
 /// The rays of a file.
 pub struct Listed {
     /// What the file is called.
     pub name: String,
+    /// Where it is.
+    pub path: PathBuf,
     /// The rays.
     pub rays: Arc<Vec<Ray>>,
     /// There are more in the file than are listed.
@@ -86,6 +100,23 @@ impl RayList {
         reading.or_else(|| self.tracing.as_ref().map(|(_, job)| &job.progress))
     }
 
+    /// Chooses the row of the ray that is followed, if that is known by its number alone and still is the one in the file.
+    pub fn find_followed(&mut self, followed: Option<Ray>) {
+        let Some(number) = self.followed.take() else { return };
+        let same = self.file.as_ref().is_some_and(|file| file.rays.get(number as usize).copied() == followed);
+        let row = self.traced.as_ref().and_then(|traced| traced.order.iter().position(|of| *of == number));
+        if let Some(row) = row.filter(|_| same) {
+            (self.chosen, self.moved) = (Some(num::index(row)), self.moved + 1);
+        }
+    }
+
+    /// The number of the ray that is followed, if it is one of the file.
+    pub fn number_followed(&self) -> Option<u32> {
+        let brought = self.brought.as_ref().and_then(|brought| brought.followed);
+        let row = || self.chosen.and_then(|row| Some(self.row(row)?.0));
+        brought.or(self.followed).or_else(row)
+    }
+
     /// What a row shows: the number of its ray, the ray, and what that does.
     pub fn row(&self, row: u32) -> Option<(u32, Ray, RayWork)> {
         let (file, traced) = (self.file.as_ref()?, self.traced.as_ref()?);
@@ -107,7 +138,7 @@ pub fn read(shared: &Shared, path: PathBuf) -> std::io::Result<Reading> {
         let each = (size_of::<Ray>() + size_of::<RayWork>() + size_of::<u32>()) as u64;
         let memory = budget.charge(file.rays.len() as u64 * each).map_err(|why| wrong(&why))?;
         let name = path.file_name().map_or_else(|| path.to_string_lossy(), |name| name.to_string_lossy()).into_owned();
-        Ok(Listed { name, rays: Arc::new(file.rays), more: file.more, _memory: memory })
+        Ok(Listed { name, path, rays: Arc::new(file.rays), more: file.more, _memory: memory })
     })
 }
 

@@ -38,7 +38,7 @@ pub struct Settings {
     pub overlay: OverlaySettings,
     /// Where the model is cut open: as long as it is the same model.
     pub section: SectionSettings,
-    /// Which triangles are hidden: those of the open model, so that they are in no file.
+    /// Which triangles are hidden: those of the open model, so that of all files only its workspace files say.
     #[serde(skip)]
     pub visible: Option<Arc<Visibility>>,
     /// What stands around the view.

@@ -22,7 +22,7 @@ pub struct Timings {
 }
 
 /// What the table is sorted by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Column {
     /// The order in which structures are listed.
     Structure,
@@ -99,7 +99,8 @@ pub fn secs_of_sample(t: &Timing) -> f64 {
 }
 
 /// How structures are timed, and the table sorted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct Terms {
     /// On which terms they are timed from now on.
     pub fairness: Fairness,

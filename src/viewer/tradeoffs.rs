@@ -31,7 +31,7 @@ pub struct Tradeoffs {
 pub type Growing = Job<Result<Vec<Scaling>, String>>;
 
 /// The plots of the workspace.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Plot {
     /// The picture's error against time.
     #[default]
@@ -89,7 +89,7 @@ impl std::str::FromStr for Plot {
 }
 
 /// How a test of triangles or boxes errs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Miss {
     /// Wrong answers.
     #[default]
@@ -124,7 +124,7 @@ impl Miss {
 }
 
 /// How good a structure is; less is better.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Goodness {
     /// Measured nanoseconds of a diffuse ray.
     #[default]

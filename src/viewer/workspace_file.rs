@@ -1,5 +1,10 @@
-//! The whole state of the window in one file: what is open, from where and how it is looked at, what is selected, which ray is
-//! followed, and the views that were kept. What belongs to the person rather than to the model (look, size, memory) is not in it.
+//! The whole state of the window in one file: what is open, from where and how it is looked at, what is selected and hidden,
+//! which ray is followed, what was made of all that, and the views that were kept. What was measured is not in it, and what
+//! belongs to the person rather than to the model (look, size, memory) is not either.
+
+mod parts;
+
+pub use parts::{Look, Made, RaysFile};
 
 use std::path::Path;
 
@@ -43,16 +48,21 @@ pub struct WorkspaceFile {
     pub beside: Vec<String>,
     /// The views that were kept.
     pub bookmarks: Vec<Bookmark>,
+    /// How what is measured is looked at: of a file that does not say, as it is.
+    #[serde(default)]
+    pub look: Option<Look>,
+    /// What is made again.
+    #[serde(default)]
+    pub made: Made,
 }
 
 impl WorkspaceFile {
     /// Of a model and settings; the rest is filled in.
     pub fn new(name: &str, settings: &Settings, camera: Camera, instances: Instances) -> Self {
         let built_in = name.starts_with(crate::scene::builtin::SCHEME) || model::is_case(name);
-        let whole = std::path::absolute(name).ok().filter(|_| !built_in);
         Self {
             version: VERSION,
-            model: whole.map_or_else(|| name.to_owned(), |path| path.to_string_lossy().into_owned()),
+            model: if built_in { name.to_owned() } else { Self::whole_path(Path::new(name)) },
             settings: Settings { recent: Vec::new(), memory_mib: None, ..settings.clone() },
             camera,
             instances,
@@ -63,7 +73,14 @@ impl WorkspaceFile {
             tried: None,
             beside: Vec::new(),
             bookmarks: Vec::new(),
+            look: None,
+            made: Made::default(),
         }
+    }
+
+    /// The whole path of a file, as it stands in one.
+    pub fn whole_path(path: &Path) -> String {
+        std::path::absolute(path).as_deref().unwrap_or(path).to_string_lossy().into_owned()
     }
 
     /// Whether a name is that of such a file.
@@ -100,7 +117,12 @@ impl WorkspaceFile {
 mod tests {
     use super::*;
     use crate::geometry::Aabb;
+    use crate::lab::Fairness;
+    use crate::render::{Mode, Range};
+    use crate::viewer::timings::{Column, Terms};
+    use crate::viewer::tradeoffs::{Goodness, Miss, Plot};
     use glam::Vec3;
+    use serde_json::json;
 
     #[test]
     fn what_is_written_is_read_and_what_is_not_ours_is_refused() {
@@ -128,5 +150,84 @@ mod tests {
         }
         assert!(WorkspaceFile::read("/nowhere/x.boxwood").is_err_and(|why| why.contains("/nowhere/x.boxwood")));
         assert!(file.write(Path::new("/nowhere/x.boxwood")).is_err_and(|why| why.contains("another folder")));
+    }
+
+    /// A file that says all that can be said of what is looked at and made again, as it is written.
+    fn full() -> serde_json::Value {
+        let camera = Camera::framing(&Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE }, Vec3::ONE, Vec3::Y, 1.3);
+        let mut file = WorkspaceFile::new("builtin:lecture", &Settings::default(), camera, Instances::default());
+        let range = Range { min: 1.5, max: 7.1 };
+        file.look = Some(Look {
+            range: Some(range),
+            shared: vec![(Mode::Prims, range)],
+            tiles: true,
+            plot: Plot::Model,
+            miss: Miss::Ulps,
+            goodness: Goodness::Epo,
+            errors_as_table: true,
+            terms: Terms { fairness: Fairness::Best, column: Column::Rate, reversed: true },
+            film_speed: Some(0.1),
+            ray_speed: Some(12.0),
+        });
+        file.made = Made {
+            hidden: vec![serde_json::from_str(r#"{"of": 16, "runs": "3 13"}"#).expect("as it is written")],
+            hidden_now: Some(0),
+            rays: Some(RaysFile { path: "/somewhere/a.rays".to_owned(), followed: Some(7) }),
+            film: Some(12),
+            tiles: true,
+            volumes: true,
+            drawn: Some("kdop14".to_owned()),
+        };
+        serde_json::to_value(&file).expect("plain data")
+    }
+
+    /// What is read of a file with that in it.
+    fn read(value: &serde_json::Value) -> Result<WorkspaceFile, String> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("lesson.boxwood");
+        std::fs::write(&path, value.to_string()).expect("written");
+        WorkspaceFile::read(&path.to_string_lossy())
+    }
+
+    #[test]
+    fn all_that_is_said_is_read_and_what_is_not_said_is_as_it_was() {
+        let whole = full();
+        let file = read(&whole).expect("as it is written");
+        assert_eq!(serde_json::to_value(&file).expect("plain data"), whole);
+        assert_eq!(file.look.as_ref().and_then(|look| look.range), Some(Range { min: 1.5, max: 7.1 }));
+        // Files of earlier versions say nothing of this, those of later ones more.
+        let mut old = whole.clone();
+        let parts = old.as_object_mut().expect("an object");
+        assert!(parts.remove("look").is_some() && parts.remove("made").is_some());
+        let old = read(&old).expect("as it was written");
+        assert_eq!((old.look, old.made), (None, Made::default()));
+        let mut later = whole;
+        (later["look"], later["made"]) = (json!({"sound": "loud"}), json!({"film": 3, "smell": 1}));
+        let later = read(&later).expect("what is unknown is left out");
+        assert_eq!((later.look, later.made), (Some(Look::default()), Made { film: Some(3), ..Made::default() }));
+    }
+
+    #[test]
+    fn parts_that_make_no_sense_are_refused() {
+        for (part, name, broken) in [
+            ("look", "plot", json!("Pie")),
+            ("look", "range", json!({"min": null, "max": 1.0})),
+            ("look", "range", json!([1.0, 2.0, 3.0])),
+            ("look", "shared", json!([["nodes"]])),
+            ("look", "terms", json!({"column": "Price"})),
+            ("look", "terms", json!({"fairness": "unfair"})),
+            ("look", "film_speed", json!("fast")),
+            ("made", "film", json!(-1)),
+            ("made", "film", json!(4_294_967_296_u64)),
+            ("made", "hidden", json!([{"of": 16}])),
+            ("made", "hidden", json!([{"of": 16, "runs": [3, 13]}])),
+            ("made", "hidden_now", json!("all")),
+            ("made", "rays", json!({"followed": 1})),
+            ("made", "drawn", json!(3)),
+        ] {
+            let mut file = full();
+            file[part][name] = broken.clone();
+            assert!(read(&file).is_err_and(|why| why.contains("no workspace file")), "{name}: {broken}");
+        }
     }
 }

@@ -19,6 +19,7 @@ mod following;
 mod hands;
 mod heat;
 mod layout;
+mod made_again;
 mod measuring;
 mod modes;
 mod needs;

@@ -1,5 +1,7 @@
 //! The whole state of the window in a file.
 
+use std::path::Path;
+
 use boxwood::lab::RayKind;
 use boxwood::viewer::settings::{BoxColor, Workspace};
 use eframe::egui::{Key, Modifiers, PointerButton, Role, vec2};
@@ -7,8 +9,10 @@ use egui_kittest::kittest::Queryable;
 
 use crate::window::{Setup, Window};
 
+const TEAPOT: &str = "builtin:teapot?triangles=1000";
+
 /// A window whose file dialogs answer with this path.
-fn window(model: &str, answer: &std::path::Path) -> Window {
+fn window(model: &str, answer: &Path) -> Window {
     let mut setup = Setup { size: vec2(1280.0, 800.0), answer: Some(answer.to_path_buf()), ..Setup::default() };
     setup.options.model = Some(model.to_owned());
     Window::new(setup).settled()
@@ -18,7 +22,7 @@ fn window(model: &str, answer: &std::path::Path) -> Window {
 fn nothing_is_lost_between_saving_and_opening() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("lesson.boxwood");
-    let mut w = window("builtin:teapot?triangles=1000", &path);
+    let mut w = window(TEAPOT, &path);
     // Open, orbit, step a ray, try a division.
     w.drag(w.viewport().center(), vec2(60.0, 20.0), PointerButton::Primary, Modifiers::NONE);
     w.button("k-d tree");
@@ -74,7 +78,7 @@ fn nothing_is_lost_between_saving_and_opening() {
     assert!(after.settings.panes == settings.panes && after.settings.panes.others.len() == 1);
     assert!(after.tree.tried.is_some_and(|(axis, place)| axis == tried.0 && (place - tried.1).abs() < 1e-9));
     assert!(after.overlay.as_ref().is_some_and(|overlay| overlay.tried.is_some()));
-    assert!(after.model.as_ref().is_some_and(|model| model.scene.name == "builtin:teapot?triangles=1000"));
+    assert!(after.model.as_ref().is_some_and(|model| model.scene.name == TEAPOT));
     // The ray is followed again where it is looked at.
     w.key(Modifiers::NONE, Key::F3);
     w.until("its steps", |s| s.rays.columns.len() == 2);

@@ -19,7 +19,7 @@ pub fn running(state: &State) -> Vec<(bool, &'static str, Command)> {
         (state.rays.following.is_some(), "Stop following the ray", Command::CancelFollow),
         (state.brute.marking, "Mark no rectangle", Command::MarkRectangle(false)),
         (state.brute.running.is_some(), "Stop comparing with brute force", Command::CancelBrute),
-        (state.hiding.is_some(), "Stop sorting out triangles", Command::CancelHide),
+        (state.is_hiding(), "Stop sorting out triangles", Command::CancelHide),
         (state.filming.making.is_some(), "Stop making the film", Command::CloseFilm),
         (rays, "Stop reading or tracing the file of rays", Command::CancelRays),
         (state.panes.tuned.is_some(), "Close the parameters of the pane", Command::TunePane(None)),

@@ -46,7 +46,7 @@ const fn hands(navigation: Navigation) -> [(&'static str, &'static str); 16] {
     [
         (orbit, "Orbit around the model"),
         (pan, "Move the picture"),
-        ("Click", "Mark the leaf there; in Ray, follow the ray"),
+        ("Click", "Mark the leaf there; in Ray, its ray"),
         ("Wheel, pinch", "Zoom to the pointer"),
         ("Arrow keys", "Orbit, if the viewport has the focus"),
         ("+ and -", "Zoom, if the viewport has the focus"),

@@ -13,14 +13,14 @@ use crate::viewer::theme::Palette;
 /// What sees hidden triangles all the same.
 const BUT: &str = "Heat maps, steps of a ray and measurements show what the structure does for all triangles.";
 
-/// Draws the panel: with a cell selected, or where some triangles are hidden.
+/// Draws the panel: with a cell selected, or where some triangles are hidden or will be.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let selected = state.picked.as_ref().is_some_and(|picked| picked.selected().is_some());
     let hidden = in_words(state);
-    if !selected && hidden.is_none() {
+    if !selected && hidden.is_none() && !state.is_hiding() {
         return;
     }
-    let free = selected && !state.is_measuring() && state.hiding.is_none();
+    let free = selected && !state.is_measuring() && !state.is_hiding();
     let written = |key| actions::written(ui.ctx(), key);
     let isolate = format!("Show only the triangles of this cell and those below it. {BUT} ({})", written(&ISOLATE));
     let hide = format!("Hide the triangles of this cell and those below it. {BUT} ({})", written(&HIDE));
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
                 commands.push(command);
             }
         }
-        if state.hiding.is_some() {
+        if state.is_hiding() {
             ui.spinner().on_hover_text("Sorting out the triangles.");
         }
     });

@@ -1,8 +1,10 @@
 //! Views that are kept: from where, through which structure, and what was selected.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::State;
+use crate::accel::Visibility;
 use crate::scene::Camera;
 use crate::viewer::history::{Choices, Kind};
 use crate::viewer::pick::Picked;
@@ -18,6 +20,23 @@ pub struct Bookmark {
     choices: Choices,
     /// The cells from the root to the selected one: level and number of each.
     selected: Vec<(u32, u32)>,
+    /// In a workspace file, and until what is hidden was read from there: the number of its set of hidden triangles.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) hidden: Option<usize>,
+}
+
+impl Bookmark {
+    /// Which triangles are seen from there, if not all.
+    pub(super) const fn visible(&self) -> Option<&Arc<Visibility>> {
+        self.choices.visible.as_ref()
+    }
+
+    /// Takes in its set of hidden triangles, if that is among those of a file that were awaited.
+    pub(super) fn take_hidden(&mut self, sets: &[Arc<Visibility>]) {
+        if let Some(set) = self.hidden.take() {
+            self.choices.visible = sets.get(set).cloned();
+        }
+    }
 }
 
 impl State {
@@ -34,15 +53,17 @@ impl State {
         let selected = self.picked.as_ref().filter(|_| self.building.is_none());
         let ids = selected.map(Picked::ids).unwrap_or_default();
         let selected = ids.iter().map(|id| (id.instance, id.node)).collect();
-        self.bookmarks.push(Bookmark { name, camera: self.camera, choices: Choices::of(&self.settings, None), selected });
+        let (camera, choices) = (self.camera, Choices::of(&self.settings, None));
+        self.bookmarks.push(Bookmark { name, camera, choices, selected, hidden: self.hidden_later() });
     }
 
     /// Goes back to one; that can be taken back like any move and choice.
     pub(super) fn go_to_bookmark(&mut self, at: usize) {
-        let Some(Bookmark { camera, choices, selected, .. }) = self.bookmarks.get(at).cloned() else { return };
+        let Some(Bookmark { camera, choices, selected, hidden, .. }) = self.bookmarks.get(at).cloned() else { return };
         self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
         self.look(camera, Kind::Single);
         self.restore(Some(choices.beside(&self.settings)));
+        self.hide_later(hidden);
         self.await_cell(&selected, None);
     }
 }

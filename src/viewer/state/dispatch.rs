@@ -52,8 +52,8 @@ impl State {
             }
             Command::Section(section) => self.cut(section),
             Command::Hide(change) => self.hide_triangles(change),
-            Command::CancelHide => self.hiding = None,
-            Command::ShowAll => (self.settings.visible, self.hiding) = (None, None),
+            Command::CancelHide => self.hide_no_more(),
+            Command::ShowAll => self.show_all(),
             Command::Camera(camera) => self.look(camera, Kind::Hand),
             Command::CameraBack => self.camera = self.cameras.back(self.camera).unwrap_or(self.camera),
             Command::CameraForward => self.camera = self.cameras.forward(self.camera).unwrap_or(self.camera),

@@ -46,11 +46,11 @@ impl State {
         self.tree.outlining = workers::outline(&self.shared, shown).ok();
     }
 
-    /// Whether somebody looks at the list of cells, or boxes are drawn by what it says.
+    /// Whether somebody looks at the list of cells, boxes are drawn by what it says, or a film is made of it.
     fn needs_outline(&self) -> bool {
         let overlay = &self.settings.overlay;
         let boxes = overlay.boxes && (overlay.subtree_only || overlay.color.needs_rows());
-        self.settings.workspace == Workspace::Structure || boxes
+        self.settings.workspace == Workspace::Structure || boxes || self.again.needs_outline()
     }
 
     /// Whether something of the tree or the selected cell is on its way.

@@ -23,13 +23,21 @@ impl State {
         free && self.has_film() && self.tree.outline.as_ref().is_some_and(|outline| !outline.is_cut())
     }
 
-    /// Starts making it.
-    pub(super) fn make_film(&mut self) {
+    /// Starts making it, to be seen from a position on.
+    pub(super) fn begin_film(&mut self, at: u32) {
         let (Some(shown), Some(outline), true) = (&self.shown, &self.tree.outline, self.can_make_film()) else { return };
         match filming::make(&self.shared, shown, Arc::clone(outline)) {
-            Ok(job) => (self.filming.making, self.filming.failed) = (Some(job), None),
+            Ok(job) => (self.filming.making, self.filming.failed, self.filming.at) = (Some(job), None, at),
             Err(e) => self.fail(format!("Can't make the film: {e}.")),
         }
+    }
+
+    /// Makes it, where it is seen.
+    pub(super) fn make_film(&mut self) {
+        if !self.can_make_film() {
+            return;
+        }
+        self.begin_film(0);
         if self.settings.workspace != Workspace::Structure {
             self.carry_out(Command::Workspace(Workspace::Structure));
         }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::{Causes, Fits, State};
+use super::{Again, Causes, Fits, State};
 use crate::accel::BuildError;
 use crate::job::Outcome;
 use crate::render::Mode;
@@ -83,15 +83,15 @@ impl State {
         let (beside, kind, speed) = (std::mem::take(&mut self.rays.beside), self.rays.kind, self.rays.speed);
         let before = std::mem::replace(&mut self.rays, Rays { asked: ray, beside, kind, speed, ..Rays::default() });
         self.shared.give_back(before.columns);
-        (self.brute, self.hiding, self.settings.visible) = (Brute::default(), None, None);
+        (self.brute, self.settings.visible, self.range) = (Brute::default(), None, None);
+        self.hide_no_more();
         self.close_rays();
-        self.awaited = None;
+        (self.awaited, self.again) = (None, Again::default());
         self.forget_panes();
         self.bring_back();
         if self.checks.selected.is_some_and(|cell| model::case_name(cell.case) == name) {
             self.checks.mark_case(&model.rays);
         }
-        self.range = None;
         self.models += 1;
         self.renderer.clear();
         self.model = Some(model);

@@ -25,7 +25,7 @@ impl State {
     pub(super) fn hide_triangles(&mut self, change: Change) {
         let cell = self.picked.as_ref().and_then(Picked::selected).copied();
         // One after the other, or the second would not know what the first hides.
-        let busy = self.is_measuring() || self.hiding.is_some();
+        let busy = self.is_measuring() || self.is_hiding();
         let (Some(cell), Some(shown), false) = (cell, &self.shown, busy) else { return };
         let (accel, before, budget) = (Arc::clone(&shown.accel), self.visible().cloned(), self.shared.budget.clone());
         let job = Job::spawn("hide", self.shared.waker(), move |cancel, _| {
@@ -35,6 +35,12 @@ impl State {
             Ok(job) => self.hiding = Some(job),
             Err(e) => self.fail(format!("Can't hide triangles: {e}.")),
         }
+    }
+
+    /// Shows all triangles again.
+    pub(super) fn show_all(&mut self) {
+        (self.settings.visible, self.hiding) = (None, None);
+        self.hide_later(None);
     }
 
     pub(super) fn advance_hiding(&mut self) {

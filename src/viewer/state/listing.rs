@@ -9,8 +9,9 @@ use crate::job::Outcome;
 use crate::lab::RayKind;
 use crate::viewer::command::Command;
 use crate::viewer::dialogs::answered;
-use crate::viewer::ray_list::{self, RayList};
+use crate::viewer::ray_list::{self, Brought, RayList};
 use crate::viewer::settings::Workspace;
+use crate::viewer::workspace_file::{RaysFile, WorkspaceFile};
 
 impl State {
     /// Asks for a file of rays.
@@ -26,6 +27,11 @@ impl State {
         if self.loading.is_some() {
             return self.await_rays(path);
         }
+        self.ray_list.brought = None;
+        self.read_rays(path);
+    }
+
+    fn read_rays(&mut self, path: PathBuf) {
         match ray_list::read(&self.shared, path) {
             Ok(job) => self.ray_list.reading = Some(job),
             Err(e) => self.fail(format!("Can't open the rays: {e}.")),
@@ -34,7 +40,23 @@ impl State {
 
     /// Reads a file of rays once a model is open.
     pub fn await_rays(&mut self, path: PathBuf) {
-        self.ray_list.awaited = Some(path);
+        (self.ray_list.awaited, self.ray_list.brought) = (Some(path), None);
+    }
+
+    /// Reads that of a workspace file once its model is open, unless somebody asked for another one.
+    pub(super) fn bring_rays(&mut self, file: RaysFile) {
+        if self.ray_list.awaited.is_none() {
+            let path = PathBuf::from(file.path);
+            self.ray_list.awaited = Some(path.clone());
+            self.ray_list.brought = Some(Brought { path, followed: file.followed });
+        }
+    }
+
+    /// The file of rays that is open or on its way, for a workspace file.
+    pub(super) fn rays_file(&self) -> Option<RaysFile> {
+        let brought = self.ray_list.brought.as_ref().map(|brought| &brought.path);
+        let path = brought.or(self.ray_list.file.as_ref().map(|file| &file.path))?;
+        Some(RaysFile { path: WorkspaceFile::whole_path(path), followed: self.ray_list.number_followed() })
     }
 
     /// Forgets the rays; a file that waits for its model stays, and one that is asked for.
@@ -46,7 +68,7 @@ impl State {
 
     /// Stops reading or tracing them; what was not traced is not listed.
     pub(super) fn cancel_rays(&mut self) {
-        self.ray_list.reading = None;
+        (self.ray_list.reading, self.ray_list.brought) = (None, None);
         if self.ray_list.tracing.is_some() {
             self.close_rays();
         }
@@ -68,7 +90,7 @@ impl State {
             && let Some(path) = self.ray_list.awaited.take()
             && self.model.is_some()
         {
-            self.open_rays(path);
+            self.read_rays(path);
         }
         self.advance_reading();
         self.advance_tracing();
@@ -79,14 +101,21 @@ impl State {
         match job.poll() {
             Outcome::Running => return,
             Outcome::Done(Ok(file)) => {
+                let brought = self.ray_list.brought.take();
                 self.close_rays();
                 self.ray_list.file = Some(file);
-                self.carry_out(Command::Workspace(Workspace::Ray));
+                match brought {
+                    Some(brought) => self.ray_list.followed = brought.followed,
+                    None => self.carry_out(Command::Workspace(Workspace::Ray)),
+                }
             }
-            Outcome::Done(Err(why)) => self.fail(format!("{} Your scene is unchanged.", sentence(&why))),
+            Outcome::Done(Err(why)) => match self.ray_list.brought.take() {
+                Some(_) => self.also_fail(&format!("{} The rest of the workspace is open.", sentence(&why))),
+                None => self.fail(format!("{} Your scene is unchanged.", sentence(&why))),
+            },
             Outcome::Died => self.fail("Can't open the rays: reading them failed. Please report this file.".to_owned()),
         }
-        self.ray_list.reading = None;
+        (self.ray_list.reading, self.ray_list.brought) = (None, None);
     }
 
     /// Traces them through the shown structure where somebody looks at them.
@@ -98,6 +127,7 @@ impl State {
                 Outcome::Done(Ok(traced)) => {
                     self.shared.give_back(self.ray_list.traced.replace(Arc::new(traced)));
                     self.ray_list.chosen = None;
+                    self.ray_list.find_followed(self.rays.asked);
                 }
                 Outcome::Done(Err(_)) => {}
                 Outcome::Died => {

@@ -1,6 +1,7 @@
 //! What the window knows; `dispatch` is how commands change it, `finished` what finished jobs change, and `refresh` what is asked
 //! for anew when the view changes. No drawing here.
 
+mod again;
 mod asked;
 mod bookmarks;
 mod brute_force;
@@ -22,6 +23,7 @@ mod listing;
 mod panes;
 mod ranges;
 mod refresh;
+mod rehiding;
 mod saving;
 mod sectioning;
 mod tiling;
@@ -30,12 +32,14 @@ mod trading;
 mod visiting;
 mod volumes;
 
+use again::Again;
 use asked::Asked;
 pub use bookmarks::Bookmark;
 pub use causes::Causes;
 pub use heating::LEAST_SPAN;
 use hiding::Hiding;
 pub use panes::{Pane, Panes};
+use rehiding::Rehiding;
 use saving::{Awaited, Saving};
 use visiting::Visiting;
 pub use volumes::Fits;
@@ -176,6 +180,10 @@ pub struct State {
     saving: Saving,
     /// A cell to select once its structure is there.
     awaited: Option<Awaited>,
+    /// What a workspace file says was made of its structure.
+    again: Again,
+    /// Hidden triangles of a workspace file.
+    rehiding: Option<Rehiding>,
     /// Views of the open model that were kept.
     pub bookmarks: Vec<Bookmark>,
     /// The first and the last depth that were chosen, whether or not the shown structure is as deep.
@@ -305,6 +313,8 @@ impl State {
             unfolded: false,
             saving: Saving::default(),
             awaited: None,
+            again: Again::default(),
+            rehiding: None,
             bookmarks: Vec::new(),
             size_px: [0, 0],
             graphics,
@@ -370,7 +380,7 @@ impl State {
             || self.checks.checking.is_some()
             || self.ray_list.tracing.is_some()
             || self.filming.making.is_some()
-            || self.hiding.is_some()
+            || self.is_hiding()
     }
 
     /// Whether a measurement can begin: there is a structure, and nothing runs that either would disturb.
@@ -405,10 +415,11 @@ impl State {
             || self.is_tiling()
             || self.awaits_visits()
             || self.ray_list.is_busy()
-            || self.hiding.is_some()
+            || self.is_hiding()
             || self.saving.is_busy()
             || self.exports.is_writing()
             || self.awaited.is_some()
+            || self.again.is_busy()
             || self.is_touring()
             || self.panes_are_busy()
             || drawing
@@ -436,6 +447,7 @@ impl State {
     fn restore(&mut self, choices: Option<Choices>) {
         let Some(choices) = choices else { return };
         (self.picking, self.tree.selecting, self.hiding) = (None, None, None);
+        self.hide_later(None);
         choices.restore(&mut self.settings);
         self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
         self.choose();
@@ -494,6 +506,12 @@ impl State {
 
     fn fail(&mut self, error: String) {
         self.error = Some(error);
+    }
+
+    /// Tells one thing more that went wrong.
+    fn also_fail(&mut self, error: &str) {
+        let before = self.error.take().map(|before| before + " ").unwrap_or_default();
+        self.error = Some(before + error);
     }
 
     /// Shows the chosen structure: a kept one at once, another after its build.
@@ -604,6 +622,7 @@ impl State {
         self.advance_brute_force();
         self.advance_ray_list();
         self.advance_hiding();
+        self.advance_rehiding();
         self.advance_picking();
         self.advance_curves();
         self.advance_measuring();
@@ -623,6 +642,7 @@ impl State {
         self.advance_visits();
         self.advance_tour();
         self.refresh_overlay();
+        self.advance_again();
     }
 
     /// How the shown structure's cells relate.

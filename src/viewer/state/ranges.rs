@@ -32,9 +32,15 @@ impl State {
         self.is_comparing() && !self.panes.fits.is_empty()
     }
 
+    /// The ranges that pictures share, each with what it is of.
+    pub(super) fn shared_ranges(&self) -> impl Iterator<Item = (Mode, Range)> {
+        self.panes.fits.iter().map(|fit| (fit.mode, fit.range))
+    }
+
     /// Finds the shared ranges anew.
     pub(super) fn fit_anew(&mut self) {
         self.range = None;
+        self.again.forget_shared();
         self.panes.fits.iter_mut().for_each(|fit| fit.of.clear());
     }
 
@@ -62,7 +68,7 @@ impl State {
             if self.panes.fits.iter().any(|fit| fit.is_of(mode, &of)) {
                 continue;
             }
-            let Some(range) = self.suiting(mode) else { continue };
+            let Some(range) = self.again.take_shared(mode).or_else(|| self.suiting(mode)) else { continue };
             self.panes.fits.retain(|fit| fit.mode != mode);
             self.panes.fits.push(Fit { mode, range, of });
             (self.shared.wake)(); // pictures are mapped anew in the next frame

@@ -9,6 +9,7 @@ use crate::accel::{CellId, registry};
 use crate::geometry::Axis;
 use crate::job::{Job, Outcome};
 use crate::lab::follow::{from_text, to_text};
+use crate::task::Cancel;
 use crate::viewer::dialogs::answered;
 use crate::viewer::files;
 use crate::viewer::kept::Key;
@@ -63,16 +64,19 @@ impl State {
     fn to_file(&self) -> Option<WorkspaceFile> {
         let model = self.model.as_ref()?;
         // A selection is of the structure that is shown, while another one may be on its way.
-        let selected = self.picked.as_ref().filter(|_| self.building.is_none());
-        let ids = |picked: &Picked| picked.ids().iter().map(|id| (id.instance, id.node)).collect();
+        let selected = self.picked.as_ref().filter(|_| self.building.is_none()).map(Picked::ids);
+        let awaited = self.awaited.as_ref().filter(|awaited| awaited.key == self.wanted_key());
+        let selected = awaited.map(|awaited| awaited.path.clone()).or(selected).unwrap_or_default();
         let mut file = WorkspaceFile::new(&model.scene.name, &self.settings, self.camera, self.instances);
-        file.selected = selected.map(ids).unwrap_or_default();
+        file.selected = selected.iter().map(|id| (id.instance, id.node)).collect();
         file.ray = self.rays.asked.as_ref().map(to_text);
         file.ray_kind = self.rays.kind.id().to_owned();
         file.step = self.rays.place();
-        file.tried = self.tree.tried.filter(|_| !file.selected.is_empty()).map(|(axis, place)| (axis.index(), place));
+        let tried = awaited.map_or(self.tree.tried, |awaited| awaited.tried).filter(|_| !file.selected.is_empty());
+        file.tried = tried.map(|(axis, place)| (axis.index(), place));
         file.beside = self.rays.beside.iter().map(|id| (*id).to_owned()).collect();
         file.bookmarks.clone_from(&self.bookmarks);
+        (file.look, file.made) = (Some(self.to_look()), self.to_made());
         Some(file)
     }
 
@@ -118,9 +122,13 @@ impl State {
     }
 
     fn write(&mut self, path: PathBuf) {
-        let Some(file) = self.to_file() else { return };
-        let write = move || file.write(&files::with_ending(path, ENDING)?);
-        match Job::spawn("save", self.shared.waker(), move |_, _| write()) {
+        let Some(mut file) = self.to_file() else { return };
+        let Some(hidden) = self.number_hidden(&mut file) else { return };
+        let write = move |cancel: &Cancel| {
+            file.made.hidden = hidden.written(cancel).map_err(|why| format!("Can't save {}: {why}.", path.display()))?;
+            file.write(&files::with_ending(path, ENDING)?)
+        };
+        match Job::spawn("save", self.shared.waker(), move |cancel, _| write(cancel)) {
             Ok(job) => self.saving.writing = Some(job),
             Err(e) => self.fail(format!("Can't save: {e}.")),
         }
@@ -142,6 +150,10 @@ impl State {
         self.rays.kind = file.ray_kind.parse().unwrap_or(self.rays.kind);
         self.rays.asked = file.ray.and_then(|text| from_text(&text).ok());
         self.rays.awaited = file.step.filter(|_| self.rays.asked.is_some());
+        if let Some(look) = file.look {
+            self.look_as(look);
+        }
+        self.make_again(file.made, &file.selected);
     }
 
     /// Selects what was saved, once its structure is there.
