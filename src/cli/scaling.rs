@@ -16,7 +16,7 @@ use super::{bar, rays};
 use crate::accel::BuildError;
 use crate::geometry::tri::TestKind;
 use crate::lab::format::{MISSING, count, duration, number};
-use crate::lab::plot::{Curve, Panel, Scale, svg_of};
+use crate::lab::plot::{Curve, Panel, svg_of};
 use crate::lab::scaling::{BuildRounds, Candidate, Exponent, Grown, Point, Scaling, Sizes, scaling};
 use crate::lab::{MachineFacts, MeasureOptions, RayKind};
 use crate::scene::builtin::MAX_TRIANGLES;
@@ -144,16 +144,14 @@ fn panels(outcome: &Outcome) -> [Panel; 2] {
             axes: ["triangles", "seconds of a build"],
             curves: curves(|p| p.build_secs),
             guide: Some(("N log N", |n| n * n.ln())),
-            labelled: false,
-            scale: Scale::Log,
+            ..Panel::default()
         },
         Panel {
             title: format!("{}: {} rays, {threads} threads", outcome.model, outcome.rays.id()),
             axes: ["triangles", "nanoseconds of a ray"],
             curves: curves(|p| p.ray_secs * 1e9),
             guide: Some(("log N", f64::ln)),
-            labelled: false,
-            scale: Scale::Log,
+            ..Panel::default()
         },
     ]
 }

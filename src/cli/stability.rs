@@ -18,7 +18,7 @@ use crate::accel::registry;
 use crate::geometry::tri::TestKind;
 use crate::lab::MachineFacts;
 use crate::lab::format::{count, number, percent};
-use crate::lab::plot::{Curve, Panel, Scale, svg_of};
+use crate::lab::plot::{Curve, Panel, svg_of};
 use crate::lab::stability::cases::{self, Case, Trial};
 use crate::lab::stability::{BoxRow, BoxTest, CaseRow, Options, Row, TestPrice, Verdict, check, check_case, prices, shrink};
 use crate::scene::Reason;
@@ -196,9 +196,7 @@ fn panel(outcome: &Outcome) -> Panel {
         title: "Error of t against time, a point a triangle test".to_owned(),
         axes: ["nanoseconds of a ray, mean over cases", "ulps that one clear hit in a thousand exceeds"],
         curves: ids.iter().map(curve).collect(),
-        guide: None,
-        labelled: false,
-        scale: Scale::Log,
+        ..Panel::default()
     }
 }
 

@@ -70,7 +70,7 @@ pub struct Args {
     /// Begin in the Check workspace; with --screenshot, run the stability lab and open the first case that rays slip through.
     #[arg(long, conflicts_with = "measure")]
     pub check: bool,
-    /// Begin in the Compare workspace with that plot: image, intersection, model or scaling; with --screenshot, fill it first.
+    /// Begin in the Compare workspace with that plot: image, intersection, model, prediction or scaling; with --screenshot, fill it first.
     #[arg(long, value_name = "PLOT", value_parser = ["image", "intersection", "model", "scaling"], conflicts_with_all = ["measure", "check"])]
     pub errors: Option<String>,
     /// Begin in the Structure workspace; with --screenshot, select that cell first: dearest, deepest, fullest, overlap or emptiest.

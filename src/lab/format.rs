@@ -89,6 +89,15 @@ pub fn percent(share: f64) -> String {
     format!("{shown}{THIN}%")
 }
 
+/// By which share something is more or less: `+12 %`, `-3 %`.
+pub fn signed_percent(share: f64) -> String {
+    match share {
+        s if !s.is_finite() => MISSING.to_owned(),
+        s if s < 0.0 => format!("-{}", percent(-s)),
+        s => format!("+{}", percent(s)),
+    }
+}
+
 /// A share of the whole to three digits: `12.3 %`.
 pub fn share(share: f64) -> String {
     if share.is_finite() { format!("{}{THIN}%", number(share * 100.0)) } else { MISSING.to_owned() }
@@ -222,6 +231,9 @@ mod tests {
         assert_eq!(error(3.2e-4), "3.2e-4");
         for (share, expected) in [(0.62, "62 %"), (0.001, "<1 %"), (0.9999, ">99 %"), (1.0, "100 %"), (0.0, "0 %")] {
             assert_eq!(plain(percent(share)), expected);
+        }
+        for (share, expected) in [(0.12, "+12 %"), (-0.034, "-3 %"), (2.5, "+250 %"), (0.0, "+0 %"), (f64::NAN, MISSING)] {
+            assert_eq!(plain(signed_percent(share)), expected);
         }
     }
 

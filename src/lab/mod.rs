@@ -29,6 +29,7 @@ pub mod needs;
 pub mod peers;
 #[cfg(feature = "plots")]
 pub mod plot;
+pub mod prediction;
 mod quality;
 mod raster;
 pub mod ray_file;

@@ -4,13 +4,14 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Instant;
 
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::boxed::Boxed;
 use super::building::build_timed;
-use super::costs::{FitOptions, fit_costs};
+use super::costs::{Costs, FitOptions, fit_costs};
 use super::measure::{Contestant, MeasureOptions, measure};
 use super::mesh_check::check;
 use super::model_check::CheckError;
@@ -79,6 +80,10 @@ pub struct TradeoffRow {
     pub epo: Option<f64>,
     /// Nanoseconds of a random line that nothing cuts short, as the areas of the cells and the fitted costs predict.
     pub predicted_ns: Option<f64>,
+    /// Those costs: fitted to random lines, primary, shadow and diffuse rays of the view in this structure.
+    pub costs: Option<Costs>,
+    /// Seconds that the prediction took: the walk over the cells, and timing and counting rays for the fit.
+    pub prediction_secs: Option<f64>,
     /// Nanoseconds of a thread for a ray, measured, by kind.
     pub ns: BTreeMap<RayKind, f64>,
     /// By triangle test, on rays that are hard for them.
@@ -217,7 +222,9 @@ impl Tradeoffs {
     /// How good the structure is.
     fn model(&self, row: &mut TradeoffRow, accel: &Arc<dyn Accel>, weights: SahWeights, cx: &BuildCx) -> Result<(), Cancelled> {
         let (pool, cancel, quiet) = (&cx.pool, &cx.cancel, Progress::new());
+        let start = Instant::now();
         let stats = Stats::of_structure(accel.as_ref(), weights, cancel)?;
+        let walk = start.elapsed();
         let options = QualityOptions { epo_most: Some(20_000), lines: None, ..QualityOptions::default() };
         let quality = Quality::of(accel.as_ref(), &stats, weights, &options, (pool, &cx.budget, cancel))?;
         row.sah = stats.sah;
@@ -228,8 +235,12 @@ impl Tradeoffs {
             row.ns.extend(timing.first().map(|timing| (set.kind, ns_per_ray(timing, pool))));
         }
         let sets: Vec<&RaySet> = self.sets.iter().collect();
+        let start = Instant::now();
         let costs = fit_costs(&contestant, &sets, &FitOptions { rounds: 3, cap_secs: 0.5 }, pool, cancel, &quiet)?;
-        row.predicted_ns = costs.into_iter().next().flatten().map(|costs| CostRow::of(costs, &quality).expected_ns);
+        let took = (walk + start.elapsed()).as_secs_f64();
+        row.costs = costs.into_iter().next().flatten();
+        row.predicted_ns = row.costs.clone().map(|costs| CostRow::of(costs, &quality).expected_ns);
+        row.prediction_secs = row.predicted_ns.map(|_| took);
         Ok(())
     }
 

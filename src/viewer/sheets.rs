@@ -1,130 +1,22 @@
 //! The tables of the window as they are saved: every figure as exactly as it is known, with its unit over the column.
 
+mod compare;
 mod findings;
 mod holdings;
 mod listed;
+mod watched;
+mod what;
 
 use super::rays::Column;
 use super::state::State;
 use super::timings::secs_of_sample;
-use super::tradeoffs::Plot;
 use crate::accel::stats::LEAF_SIZES;
 use crate::accel::{Prune, Step};
 use crate::geometry::Axis;
-use crate::lab::converge::Reference;
-use crate::lab::{Fairness, Field, RayKind, SahCurves, Sheet, Timing};
+use crate::lab::{Field, SahCurves, Sheet, Timing};
 pub use listed::ListedRays;
-
-/// A table or plot of the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum What {
-    /// The timings.
-    Timings,
-    /// Figures of the shown structure, and what is predicted of rays in it.
-    Statistics,
-    /// Why rays are slow.
-    Findings,
-    /// What the model uses and what is left out.
-    Needs,
-    /// What holds how much memory.
-    Memory,
-    /// The cost of every division of the selected node.
-    Division,
-    /// Bounding volumes of the selected node.
-    Volumes,
-    /// The steps of a ray.
-    Steps,
-    /// The rays of a file.
-    Rays,
-    /// The picture's error.
-    Errors,
-    /// Errors of tests of triangles and boxes.
-    Tests,
-    /// Quality against its cost, and predicted against measured.
-    Quality,
-    /// Time against triangle count.
-    Scaling,
-    /// The matrix of the stability lab.
-    Stability,
-    /// The check of the open model.
-    Check,
-}
-
-impl What {
-    /// All, in the order of workspaces.
-    pub const ALL: [Self; 15] = [
-        Self::Timings,
-        Self::Statistics,
-        Self::Findings,
-        Self::Needs,
-        Self::Memory,
-        Self::Division,
-        Self::Volumes,
-        Self::Steps,
-        Self::Rays,
-        Self::Errors,
-        Self::Tests,
-        Self::Quality,
-        Self::Scaling,
-        Self::Stability,
-        Self::Check,
-    ];
-
-    /// What it is called in menus and names of files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Timings => "timings",
-            Self::Statistics => "statistics",
-            Self::Findings => "findings",
-            Self::Needs => "needs",
-            Self::Memory => "memory",
-            Self::Division => "division",
-            Self::Volumes => "volumes",
-            Self::Steps => "steps",
-            Self::Rays => "rays",
-            Self::Errors => "errors",
-            Self::Tests => "tests",
-            Self::Quality => "quality",
-            Self::Scaling => "scaling",
-            Self::Stability => "stability",
-            Self::Check => "check",
-        }
-    }
-
-    /// Whether it is a plot as well as a table.
-    pub const fn has_plot(self) -> bool {
-        matches!(self, Self::Statistics | Self::Division | Self::Errors | Self::Tests | Self::Quality | Self::Scaling)
-    }
-
-    /// Whether there is anything of it.
-    pub fn is_there(self, state: &State) -> bool {
-        match self {
-            Self::Timings | Self::Memory => state.model.is_some(),
-            Self::Statistics => state.shown.as_ref().is_some_and(|shown| shown.stats.is_some()),
-            Self::Needs => state.model.as_ref().is_some_and(|model| !model.needs.is_empty()),
-            Self::Findings => state.causes.found.is_some(),
-            Self::Division => curves(state).is_some(),
-            Self::Volumes => state.fitting().is_some(),
-            Self::Steps => !state.rays.columns.is_empty(),
-            Self::Rays => state.ray_list.traced.is_some(),
-            Self::Errors => !state.errors.curves.is_empty(),
-            Self::Tests | Self::Quality => !state.tradeoffs.rows.is_empty(),
-            Self::Scaling => !state.tradeoffs.scaling.is_empty(),
-            Self::Stability => !state.checks.cases.is_empty(),
-            Self::Check => state.checks.model.is_some(),
-        }
-    }
-
-    /// What the plots of the Compare workspace are saved as.
-    pub const fn of_plot(plot: Plot) -> Self {
-        match plot {
-            Plot::Image => Self::Errors,
-            Plot::Intersection => Self::Tests,
-            Plot::Model => Self::Quality,
-            Plot::Scaling => Self::Scaling,
-        }
-    }
-}
+pub use watched::film;
+pub use what::What;
 
 /// The curves of the selected node, where their outcome is not hidden.
 pub(super) fn curves(state: &State) -> Option<&SahCurves> {
@@ -132,13 +24,15 @@ pub(super) fn curves(state: &State) -> Option<&SahCurves> {
     state.curves.as_ref().and_then(|curves| curves.1.as_ref()).filter(|_| !hidden)
 }
 
-/// A table as it is saved; `None` where there is nothing of it, and of [`ListedRays`], which make their own.
+/// A table as it is saved; `None` where there is nothing of it, and of [`ListedRays`] and [`film`], which are put together while
+/// they are saved.
 pub fn sheet(state: &State, what: What) -> Option<Sheet> {
     if !what.is_there(state) {
         return None;
     }
     Some(match what {
         What::Timings => timings(state),
+        What::Heat => watched::heat(state)?,
         What::Statistics => statistics(state),
         What::Findings => findings::causes(state.causes.found.as_ref()?),
         What::Needs => needs(state),
@@ -146,11 +40,12 @@ pub fn sheet(state: &State, what: What) -> Option<Sheet> {
         What::Division => division(curves(state)?),
         What::Volumes => findings::volumes(state.fitting()?.0),
         What::Steps => steps(&state.rays.columns),
-        What::Rays => return None,
-        What::Errors => errors(state),
-        What::Tests => tests(state),
-        What::Quality => quality(state),
-        What::Scaling => scaling(state),
+        What::Film | What::Rays => return None,
+        What::Errors => compare::errors(state),
+        What::Tests => compare::tests(state),
+        What::Quality => compare::quality(state),
+        What::Prediction => compare::prediction(&state.tradeoffs.rows),
+        What::Scaling => compare::scaling(state),
         What::Stability => stability(state),
         What::Check => findings::check(state.checks.model.as_ref()?),
     })
@@ -313,123 +208,6 @@ fn steps(columns: &[Column]) -> Sheet {
     sheet
 }
 
-fn errors(state: &State) -> Sheet {
-    let mut sheet =
-        Sheet::new(&["structure", "build (s)", "spp", "seconds", "estimated noise", "RMSE", "relMSE", "MAE", "SMAPE", "hollow"]);
-    let hollow = |reference: &Reference, rmse| if reference.is_hollow(rmse) { "yes" } else { "no" };
-    for live in &state.errors.curves {
-        for (i, shot) in live.shots.iter().enumerate() {
-            let known = live.errors.get(i).copied().flatten();
-            sheet.row([
-                live.key.entry.id.into(),
-                live.build_secs.into(),
-                u64::from(shot.samples).into(),
-                shot.secs.into(),
-                shot.noise.into(),
-                known.map(|e| e.rmse).into(),
-                known.map(|e| e.relmse).into(),
-                known.map(|e| e.mae).into(),
-                known.map(|e| e.smape).into(),
-                state.errors.reference.as_deref().zip(known).map(|(reference, e)| hollow(reference, e.rmse)).into(),
-            ]);
-        }
-    }
-    sheet
-}
-
-fn tests(state: &State) -> Sheet {
-    let mut sheet = Sheet::new(&[
-        "structure",
-        "test of",
-        "test",
-        "rays",
-        "ns/ray",
-        "wrong (1e-6)",
-        "rounded (1e-6)",
-        "t, one in a thousand (ulps)",
-    ]);
-    for row in &state.tradeoffs.rows {
-        let triangles = row.tests.iter().map(|test| ("triangles", test.test.id(), &test.erring));
-        let boxes = row.boxes.iter().map(|test| ("boxes", test.test.id(), &test.erring));
-        for (of, test, erring) in triangles.chain(boxes) {
-            sheet.row([
-                row.name.clone().into(),
-                of.into(),
-                test.into(),
-                (erring.rays as u64).into(),
-                erring.ns.into(),
-                erring.wrong_per_million.into(),
-                erring.rounded_per_million.into(),
-                erring.p999_ulps.into(),
-            ]);
-        }
-    }
-    sheet
-}
-
-/// The kinds of rays that quality is measured on.
-const KINDS: [RayKind; 4] = [RayKind::Lines, RayKind::Primary, RayKind::Shadow, RayKind::Diffuse];
-
-fn quality(state: &State) -> Sheet {
-    let mut sheet = Sheet::new(&[
-        "structure",
-        "build (s)",
-        "SAH cost",
-        "EPO",
-        "predicted (ns/line)",
-        "lines (ns)",
-        "lines off (share)",
-        "primary (ns)",
-        "primary off (share)",
-        "shadow (ns)",
-        "shadow off (share)",
-        "diffuse (ns)",
-        "diffuse off (share)",
-        "note",
-    ]);
-    for row in &state.tradeoffs.rows {
-        let mut fields: Vec<Field> =
-            vec![row.name.clone().into(), row.build_secs.into(), row.sah.into(), row.epo.into(), row.predicted_ns.into()];
-        for kind in KINDS {
-            fields.push(row.ns.get(&kind).copied().into());
-            fields.push(row.prediction_error(kind).into());
-        }
-        fields.push(row.error.clone().into());
-        sheet.rows.push(fields);
-    }
-    sheet
-}
-
-fn scaling(state: &State) -> Sheet {
-    let mut sheet = Sheet::new(&[
-        "structure",
-        "triangles",
-        "build (s)",
-        "spread (s)",
-        "builds",
-        "ns/ray",
-        "spread (ns/ray)",
-        "rounds",
-        "terms",
-    ]);
-    for structure in &state.tradeoffs.scaling {
-        for p in &structure.points {
-            sheet.row([
-                structure.id.clone().into(),
-                p.triangles.into(),
-                p.build_secs.into(),
-                p.build_spread.into(),
-                (p.builds as u64).into(),
-                (p.ray_secs * 1e9).into(),
-                (p.ray_spread * 1e9).into(),
-                (p.rounds as u64).into(),
-                Fairness::LikeForLike.name().into(),
-            ]);
-        }
-    }
-    sheet
-}
-
 fn stability(state: &State) -> Sheet {
     let mut sheet = Sheet::new(&[
         "case",
@@ -464,18 +242,4 @@ fn stability(state: &State) -> Sheet {
         }
     }
     sheet
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_make_names_of_files_and_no_two_are_alike() {
-        for (i, what) in What::ALL.iter().enumerate() {
-            assert!(what.name().chars().all(|c| c.is_ascii_lowercase()), "{}", what.name());
-            assert!(What::ALL[..i].iter().all(|other| other.name() != what.name()), "{}", what.name());
-        }
-        assert!(Plot::ALL.into_iter().all(|plot| What::of_plot(plot).has_plot()));
-    }
 }

@@ -40,13 +40,15 @@ pub enum Plot {
     Intersection,
     /// How good structures are against the time of their build.
     Model,
+    /// Predicted against measured times of rays.
+    Prediction,
     /// Time against the number of triangles.
     Scaling,
 }
 
 impl Plot {
     /// All, in the order of tabs.
-    pub const ALL: [Self; 4] = [Self::Image, Self::Intersection, Self::Model, Self::Scaling];
+    pub const ALL: [Self; 5] = [Self::Image, Self::Intersection, Self::Model, Self::Prediction, Self::Scaling];
 
     /// The name on the command line.
     pub const fn id(self) -> &'static str {
@@ -54,6 +56,7 @@ impl Plot {
             Self::Image => "image",
             Self::Intersection => "intersection",
             Self::Model => "model",
+            Self::Prediction => "prediction",
             Self::Scaling => "scaling",
         }
     }
@@ -64,6 +67,7 @@ impl Plot {
             Self::Image => "Image",
             Self::Intersection => "Intersection",
             Self::Model => "Model",
+            Self::Prediction => "Prediction",
             Self::Scaling => "Scaling",
         }
     }
@@ -74,6 +78,7 @@ impl Plot {
             Self::Image => "The error of the path traced picture against samples and seconds.",
             Self::Intersection => "How tests of triangles and boxes err on hard rays of this view, against the time of a ray.",
             Self::Model => "How good each structure is, against the time of its build; and how far predictions are off.",
+            Self::Prediction => "What is predicted of a ray against what rays took: a mark for each structure and kind of ray.",
             Self::Scaling => "How the time of a build and of a ray grows with the number of triangles.",
         }
     }
@@ -84,7 +89,7 @@ impl std::str::FromStr for Plot {
 
     fn from_str(s: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|plot| plot.id() == s);
-        known.ok_or_else(|| format!("there is no plot '{s}': use image, intersection, model or scaling"))
+        known.ok_or_else(|| format!("there is no plot '{s}': use image, intersection, model, prediction or scaling"))
     }
 }
 

@@ -122,14 +122,22 @@ fn a_report_is_one_page_of_everything() {
     ] {
         assert!(page.contains(&format!(">{section}</h2>")), "{section}");
     }
-    assert_eq!((page.matches("<svg").count(), page.matches("data:image/png").count()), (7, 3));
     // Nothing is fetched: the only address is the name of what SVG is.
     assert_eq!(page.matches("http").count(), page.matches("http://www.w3.org/2000/svg").count());
     assert!(page.contains("Würfel.ply") && !page.contains(">NaN"));
     let report: Value = serde_json::from_slice(&fs::read(folder.at("report/report.json")).expect("there")).expect("JSON");
     assert_eq!((&report["version"], &report["quick"]), (&1.into(), &true.into()));
     assert_eq!(report["structures"].as_array().map(Vec::len), Some(2));
-    assert_eq!(report["tradeoffs"].as_array().map(Vec::len), Some(2), "no builders where it is to be quick");
+    let tradeoffs = report["tradeoffs"].as_array().expect("a list");
+    assert_eq!(tradeoffs.len(), 2, "no builders where it is to be quick");
+    // Predicted against measured is there where costs could be fitted, which is told beside what is predicted.
+    let predicted = tradeoffs.iter().filter(|row| row["predicted_ns"].is_number()).count();
+    assert_eq!((page.matches("<svg").count(), page.matches("data:image/png").count()), (7 + usize::from(predicted > 0), 3));
+    assert_eq!(page.matches("predicted = measured").count(), usize::from(predicted > 0));
+    for row in tradeoffs {
+        let fitted = [&row["costs"]["c_trav_ns"], &row["prediction_secs"]].map(|figure| figure.is_number());
+        assert_eq!(fitted, [row["predicted_ns"].is_number(); 2], "{row}");
+    }
     let boxes = &report["tradeoffs"][0]["boxes"];
     assert_eq!((&boxes[3]["test"], &boxes[3]["wrong_per_million"]), (&"two-origins".into(), &0.0.into()));
     assert_eq!(report["check"]["structures"][0]["wrong"], 0);

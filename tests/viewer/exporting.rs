@@ -3,10 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use boxwood::accel::outline::Rank;
 use boxwood::lab::Fairness;
+use boxwood::render::Mode;
 use boxwood::viewer::panes::Arrange;
 use boxwood::viewer::timings::Column;
 use boxwood::viewer::tradeoffs::Plot;
+use boxwood::viewer::{actions, format};
 use eframe::egui::{Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable;
 
@@ -17,6 +20,13 @@ fn window(answer: &Path) -> Window {
     let mut setup = Setup { size: vec2(1400.0, 900.0), answer: Some(answer.to_path_buf()), ..Setup::default() };
     setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
     Window::new(setup).settled()
+}
+
+/// Whether something can be done now.
+fn offers(w: &Window, name: &str) -> bool {
+    let all = actions::all(w.state());
+    let action = all.iter().find(|action| action.name == name);
+    action.unwrap_or_else(|| panic!("there is no {name}")).possible
 }
 
 /// Waits until something was written, and where that is.
@@ -80,6 +90,102 @@ fn plots_are_saved_as_svg_and_png() {
         w.button(item);
         let path = written(&mut w, "Statistics");
         assert!(fs::read(path).expect("there").starts_with(begins), "{ending}");
+    }
+}
+
+#[test]
+fn the_cost_along_a_film_is_saved_event_by_event() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("film"));
+    w.button("Structure workspace");
+    w.until("the cells are listed", |s| s.tree.outline.is_some());
+    w.settle();
+    assert!(!offers(&w, "Save plot as SVG: film…"));
+    w.button("Make the film");
+    w.until("the film", |s| s.filming.film.is_some());
+    w.settle();
+    w.button("Forward");
+    w.settle();
+    let film = w.state().filming.film.clone().expect("made");
+    w.button("Save film");
+    w.button("Table as CSV…");
+    let csv = fs::read_to_string(written(&mut w, "Film")).expect("there");
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!((lines[0], lines.len()), ("event,SAH cost,what happened", 2 + film.last() as usize));
+    for event in [0, 1, film.last()] {
+        assert!(lines[1 + event as usize].starts_with(&format!("{event},{},", film.cost(event))), "{csv}");
+    }
+    w.button("Save film");
+    w.button("Plot as SVG…");
+    w.until("a plot", |s| s.exports.said.as_ref().is_some_and(|said| said.ends_with(".svg")));
+    let svg = fs::read_to_string(folder.path().join("film.svg")).expect("there");
+    for said in ["SAH cost so far", "event 1", "events so far", "SAH cost"] {
+        assert!(svg.contains(&format!("\n{said}\n")), "{said}");
+    }
+    // The line has a corner for each position; the only point is where the film stands, in the plot and in the list.
+    let longest = svg.lines().filter(|line| line.starts_with("<polyline")).map(|line| line.matches(',').count()).max();
+    assert_eq!(longest, Some(1 + film.last() as usize));
+    assert_eq!(svg.matches("<circle").count(), 3);
+}
+
+#[test]
+fn the_histogram_of_a_heat_map_is_saved_with_its_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut w = window(&folder.path().join("heat"));
+    assert!(!offers(&w, "Save plot as SVG: heat…"));
+    w.choose("Shaded", Mode::Nodes.label());
+    w.settle();
+    let picture = w.state().picture.clone().expect("traced");
+    let histogram = picture.amounts.as_ref().expect("a heat map").histogram.clone();
+    w.button("Save heat");
+    w.button("Table as CSV…");
+    let csv = fs::read_to_string(written(&mut w, "Heat")).expect("there");
+    assert!(csv.contains(&format!("bvh,Nodes visited a ray,bright end,{},,", f64::from(picture.range.max))), "{csv}");
+    let bins: Vec<u32> = csv.lines().filter(|line| line.contains(",bin,")).filter_map(last_count).collect();
+    assert_eq!(bins, histogram.counts);
+    w.button("Save heat");
+    w.button("Plot as SVG…");
+    w.until("a plot", |s| s.exports.said.as_ref().is_some_and(|said| said.ends_with(".svg")));
+    let svg = fs::read_to_string(folder.path().join("heat.svg")).expect("there");
+    let [dark, bright] = [picture.range.min, picture.range.max].map(|end| format::number(end.into()));
+    for said in ["Nodes visited a ray", &format!("dark {dark}"), &format!("bright {bright}")] {
+        assert!(svg.contains(&format!("\n{said}\n")), "{said}");
+    }
+    let filled = histogram.counts.iter().filter(|pixels| **pixels > 0).count();
+    assert!(svg.matches("<rect").count() > filled, "a column for each bin that holds something");
+}
+
+/// The count that ends a line.
+fn last_count(line: &str) -> Option<u32> {
+    line.rsplit(',').next()?.parse().ok()
+}
+
+#[test]
+fn volumes_around_a_node_are_saved_as_bars() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let answer = Some(folder.path().join("volumes.svg"));
+    let mut setup = Setup { size: vec2(1280.0, 1700.0), answer, ..Setup::default() };
+    setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
+    let mut w = Window::new(setup).settled();
+    w.button("Structure workspace");
+    w.until("the cells are listed", |s| s.tree.outline.is_some());
+    w.settle();
+    w.button(Rank::Overlap.name());
+    w.settle();
+    w.button("Compare bounding volumes");
+    w.until("rows", |s| s.fitting().is_some());
+    w.settle();
+    w.button("Save volumes");
+    w.button("Plot as SVG…");
+    let svg = fs::read_to_string(written(&mut w, "Volumes")).expect("there");
+    let rows = w.state().fitting().expect("made").0.rows.clone();
+    let hull = rows.iter().find(|row| row.id == "hull").expect("the tightest").area;
+    for row in &rows {
+        let figure = format::number(row.area / hull);
+        assert!(svg.contains(&format!("\n{figure}\n")), "{}: {figure}", row.id);
+    }
+    for name in ["Convex hull", "Sphere", "26-DOP"] {
+        assert_eq!(svg.matches(&format!("\n{name}\n")).count(), 3, "in each of three plots: {name}");
     }
 }
 
@@ -178,9 +284,13 @@ fn a_report_that_is_stopped_leaves_nothing() {
 
 #[test]
 fn timings_are_sorted_by_a_click_or_a_key() {
-    let mut setup = Setup { size: vec2(1400.0, 900.0), alone: true, ..Setup::default() };
+    let folder = tempfile::tempdir().expect("a folder");
+    let answer = Some(folder.path().join("timings.svg"));
+    let mut setup = Setup { size: vec2(1400.0, 900.0), alone: true, answer, ..Setup::default() };
     setup.options.model = Some("builtin:lecture".to_owned());
     let mut w = Window::new(setup).settled();
+    let plot = "Save plot as SVG: timings…";
+    assert!(offers(&w, "Save table: timings…") && !offers(&w, plot), "builds are known, nothing to draw as bars is");
     w.choose("Like for like", "Each at its best");
     w.button("Measure");
     w.until("timings", |s| s.measuring.is_none() && s.timings.view.is_some());
@@ -204,6 +314,20 @@ fn timings_are_sorted_by_a_click_or_a_key() {
     w.choose("Each at its best", "Like for like");
     w.step();
     assert!(w.says("measured: each at its best"));
+    // Saved as bars, each with its figure and its spread.
+    assert!(offers(&w, plot));
+    w.button("Save timings");
+    w.button("Plot as SVG…");
+    let svg = fs::read_to_string(written(&mut w, "Timings")).expect("there");
+    assert!(svg.contains("timings, each at its best"), "{svg}");
+    let rows = w.state().timings.sorted(&w.state().terms_of_timings);
+    for (entry, timing) in rows.iter().filter_map(|(entry, row)| Some((entry, row.timing.as_ref()?))) {
+        let figure = format::number(timing.mrays_per_sec);
+        let begins = [format!("\n{figure} ±"), format!("\n{figure}\n"), format!("\n{figure} (")];
+        assert!(begins.iter().any(|figure| svg.contains(figure)), "{}: {figure}", entry.id);
+        assert!(svg.contains(&format!("\n{}\n", entry.short)), "{}", entry.short);
+    }
+    assert!(svg.contains("\nRaster\n"));
 }
 
 #[test]

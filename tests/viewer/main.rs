@@ -30,6 +30,7 @@ mod palette;
 mod panes;
 mod parameters;
 mod pixels;
+mod predicting;
 mod presenting;
 mod ray_files;
 mod resting;

@@ -6,7 +6,7 @@ use super::{
     ConvergeCx, ConvergeError, ConvergeOptions, Convergence, Curve, Point, REFERENCE_FACTOR, Reference, Runner, evaluate, render,
 };
 use crate::lab::format::count;
-use crate::lab::plot::{Curve as Plotted, Dot, Panel, Scale};
+use crate::lab::plot::{Curve as Plotted, Dot, Mark, Panel};
 use crate::lab::{MachineFacts, Metric, SceneFacts};
 use crate::render::sampler::SamplerKind;
 use crate::render::{Job, Transport};
@@ -120,7 +120,8 @@ pub fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
         let mut samplers: Vec<SamplerKind> = curves.iter().map(|c| c.sampler).collect();
         samplers.dedup();
         let dash = samplers.iter().position(|sampler| *sampler == curve.sampler).unwrap_or(0);
-        Plotted { id: curve.structure.clone(), name, dash, points: curve.points.iter().map(dot).collect() }
+        let points = curve.points.iter().map(dot).collect();
+        Plotted { id: curve.structure.clone(), name, dash, mark: Some(Mark::Circle), points }
     };
     let reference = &outcome.convergence.reference;
     let panel = |title: &str, x: &'static str, of_secs: bool| Panel {
@@ -128,8 +129,7 @@ pub fn panels(outcome: &Outcome) -> [(&'static str, Panel); 2] {
         axes: [x, "RMSE of linear light"],
         curves: curves.iter().map(|curve| plotted(curve, of_secs)).collect(),
         guide: Some(("slope -1/2", |x| x.powf(-0.5))),
-        labelled: false,
-        scale: Scale::Log,
+        ..Panel::default()
     };
     [
         ("error-samples", panel("error against samples", "samples a pixel", false)),

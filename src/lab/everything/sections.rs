@@ -3,9 +3,10 @@
 use super::html::Page;
 use super::{Everything, Shown, said_of};
 use crate::lab::converge;
-use crate::lab::format::{bytes, count, duration, number, or_missing, percent, rate, spread};
-use crate::lab::plot::{Curve, Panel, Scale, svg_of};
-use crate::lab::tradeoffs::{Erring, front};
+use crate::lab::format::{bytes, count, duration, number, or_missing, percent, rate, ratio, signed_percent, spread};
+use crate::lab::plot::{Curve, Panel, svg_of};
+use crate::lab::prediction::{self, Agreement};
+use crate::lab::tradeoffs::{Erring, TradeoffRow, front};
 use crate::lab::{Metric, RayKind, StructureRow};
 
 const KINDS: [RayKind; 3] = [RayKind::Primary, RayKind::Shadow, RayKind::Diffuse];
@@ -109,17 +110,12 @@ fn timings(page: &mut Page, all: &Everything) {
         for kind in KINDS {
             let measured = row.rays.get(&kind).map(|t| t.secs_median * 1e9 / t.rays.max(1) as f64 * threads);
             cells.push(or_missing(measured, number));
-            cells.push(or_missing(costs.zip(measured), |(c, measured)| signed(c.expected_ns / measured - 1.0)));
+            cells.push(or_missing(costs.zip(measured), |(c, measured)| signed_percent(c.expected_ns / measured - 1.0)));
         }
         cells
     };
     let built: Vec<Vec<String>> = all.report.structures.iter().filter(|row| row.built.is_some()).map(row).collect();
     page.table(&headers, &built);
-}
-
-/// `+12 %`.
-fn signed(share: f64) -> String {
-    if share < 0.0 { format!("-{}", percent(-share)) } else { format!("+{}", percent(share)) }
 }
 
 fn image_error(page: &mut Page, all: &Everything) -> Result<(), String> {
@@ -197,7 +193,7 @@ fn pareto(title: &str, axes: [&'static str; 2], points: Vec<(String, String, (f6
     let front = Curve { name: String::new(), dash: 1, ..Curve::of("", best) };
     let point = |(id, name, at): (String, String, (f64, f64))| Curve { name, ..Curve::of(&id, [at]) };
     let curves = std::iter::once(front).chain(points.into_iter().map(point)).collect();
-    Panel { title: title.to_owned(), axes, curves, guide: None, labelled: true, scale: Scale::Log }
+    Panel { title: title.to_owned(), axes, curves, labelled: true, ..Panel::default() }
 }
 
 fn intersection_error(page: &mut Page, all: &Everything) -> Result<(), String> {
@@ -240,7 +236,7 @@ fn intersection_error(page: &mut Page, all: &Everything) -> Result<(), String> {
 
 fn model_error(page: &mut Page, all: &Everything) -> Result<(), String> {
     page.section("Model error");
-    let points = |of: &dyn Fn(&crate::lab::tradeoffs::TradeoffRow) -> Option<f64>| {
+    let points = |of: &dyn Fn(&TradeoffRow) -> Option<f64>| {
         let row = |row| Some((of(row)?, row));
         let rows = all.tradeoffs.iter().filter_map(row);
         rows.map(|(y, row)| (row.structure.clone(), row.name.clone(), (row.build_secs, y))).collect::<Vec<_>>()
@@ -252,6 +248,7 @@ fn model_error(page: &mut Page, all: &Everything) -> Result<(), String> {
         let caption = format!("{} cost against the time of the build: those joined are beaten by nobody at both.", panel.title);
         page.plot(&svg_of(&[panel]).map_err(|error| error.to_string())?, &caption);
     }
+    agreement(page, &all.tradeoffs)?;
     let headers = [
         "structure",
         "build",
@@ -267,7 +264,7 @@ fn model_error(page: &mut Page, all: &Everything) -> Result<(), String> {
         "diffuse ns",
         "off",
     ];
-    let row = |row: &crate::lab::tradeoffs::TradeoffRow| {
+    let row = |row: &TradeoffRow| {
         if let Some(error) = &row.error {
             return vec![row.name.clone(), error.clone()];
         }
@@ -278,13 +275,40 @@ fn model_error(page: &mut Page, all: &Everything) -> Result<(), String> {
             or_missing(row.epo, number),
             or_missing(row.predicted_ns, number),
         ];
-        for kind in [RayKind::Lines, RayKind::Primary, RayKind::Shadow, RayKind::Diffuse] {
+        for kind in prediction::KINDS {
             cells.push(or_missing(row.ns.get(&kind).copied(), number));
-            cells.push(or_missing(row.prediction_error(kind), signed));
+            cells.push(or_missing(row.prediction_error(kind), signed_percent));
         }
         cells
     };
     page.table(&headers, &all.tradeoffs.iter().map(row).collect::<Vec<_>>());
+    Ok(())
+}
+
+/// Predicted against measured, and by how much that is off.
+fn agreement(page: &mut Page, rows: &[TradeoffRow]) -> Result<(), String> {
+    let points = prediction::points(rows);
+    if let Some(all) = Agreement::of(&points) {
+        let panel = prediction::plot::panel(rows, "Predicted against measured".to_owned());
+        let caption = "A mark for each structure and kind of ray. Predicted is what the areas of cells promise a random line that nothing cuts short, with what a node and a test cost, fitted to rays of all four kinds that were timed and counted in the same structure: rays that end early take less.";
+        page.plot(&svg_of(&[panel]).map_err(|error| error.to_string())?, caption);
+        let kind = |kind: RayKind| {
+            let of = Agreement::of(points.iter().filter(|point| point.kind == kind))?;
+            Some(format!("{} {}", kind.id(), ratio(of.factor)))
+        };
+        let kinds: Vec<String> = prediction::KINDS.into_iter().filter_map(kind).collect();
+        page.text(&format!(
+            "Predicted and measured differ by {} in the geometric mean of {} marks ({}); the correlation of their logarithms is {}. A prediction took {} in the mean.",
+            ratio(all.factor),
+            count(all.points as u64),
+            kinds.join(", "),
+            number(all.correlation),
+            or_missing(prediction::cost(rows), duration)
+        ));
+    }
+    for missing in prediction::missing(rows) {
+        page.text(&format!("Not among them: {missing}"));
+    }
     Ok(())
 }
 

@@ -46,7 +46,8 @@ fn exports(list: &mut List, state: &State) {
         list.add(format!("Save table: {name}…"), Command::Export(Export::Table(what))).if_possible(there);
         for form in [Form::Svg, Form::Png].into_iter().filter(|_| what.has_plot()) {
             let ending = form.ending().to_uppercase();
-            list.add(format!("Save plot as {ending}: {name}…"), Command::Export(Export::Plot(what, form))).if_possible(there);
+            let save = Command::Export(Export::Plot(what, form));
+            list.add(format!("Save plot as {ending}: {name}…"), save).if_possible(what.is_plotted(state));
         }
     }
 }

@@ -6,7 +6,7 @@ use egui_extras::{Column, TableBuilder};
 use egui_plot::{Legend, Line, LineStyle, MarkerShape, PlotPoint, PlotPoints, Points};
 
 use super::axes::log_log;
-use super::{Commands, empty, saves, scaling, tradeoffs};
+use super::{Commands, empty, predicted, saves, scaling, tradeoffs};
 use crate::render::Mode;
 use crate::viewer::command::Command;
 use crate::viewer::errors::{Errors, Known, Live};
@@ -17,30 +17,26 @@ use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
 /// The least width at which controls stand in one row with the tabs.
-const WIDE: f32 = 200.0 * theme::GRID;
+const WIDE: f32 = 222.0 * theme::GRID;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     // The panel is as high as it was made, whatever is in it: the view above must not change its size with it.
     ui.take_available_space();
     let plot = state.tradeoffs.plot;
-    let wide = ui.available_width() >= WIDE;
-    ui.horizontal(|ui| {
-        for other in tradeoffs::Plot::ALL {
-            if ui.selectable_label(other == plot, other.name()).on_hover_text(other.help()).clicked() {
-                commands.push(Command::ErrorPlot(other));
-            }
-        }
-        saves::show(ui, What::of_plot(plot), state, commands);
-        if wide {
+    if ui.available_width() >= WIDE {
+        ui.horizontal(|ui| {
+            tabs(ui, state, commands);
             controls(ui, state, commands);
-        }
-    });
-    if !wide {
+        });
+    } else {
+        ui.horizontal_wrapped(|ui| tabs(ui, state, commands));
         ui.horizontal(|ui| controls(ui, state, commands));
     }
     if plot == tradeoffs::Plot::Scaling {
         scaling::show(ui, state);
+    } else if plot == tradeoffs::Plot::Prediction {
+        predicted::show(ui, state);
     } else if plot != tradeoffs::Plot::Image {
         tradeoffs::show(ui, state);
     } else if state.settings.mode != Mode::Path {
@@ -57,6 +53,17 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     } else {
         plots(ui, state, commands);
     }
+}
+
+/// Which plot is shown, and the menu that saves it.
+fn tabs(ui: &mut Ui, state: &State, commands: &mut Commands) {
+    let plot = state.tradeoffs.plot;
+    for other in tradeoffs::Plot::ALL {
+        if ui.selectable_label(other == plot, other.name()).on_hover_text(other.help()).clicked() {
+            commands.push(Command::ErrorPlot(other));
+        }
+    }
+    saves::show(ui, What::of_plot(plot), state, commands);
 }
 
 /// What the curves are: an error, or an estimate.
@@ -78,7 +85,9 @@ fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| reference(ui, state, commands));
         }
         tradeoffs::Plot::Scaling => scaling::controls(ui, state, commands),
-        tradeoffs::Plot::Intersection | tradeoffs::Plot::Model => tradeoffs::controls(ui, state, commands),
+        tradeoffs::Plot::Intersection | tradeoffs::Plot::Model | tradeoffs::Plot::Prediction => {
+            tradeoffs::controls(ui, state, commands);
+        }
     }
 }
 

@@ -5,12 +5,13 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
-use super::{Commands, as_table, running};
+use super::{Commands, as_table, running, saves};
 use crate::lab::film::{Film, Order, Seen, Subject, is_reinserted};
 use crate::viewer::actions;
 use crate::viewer::command::Command;
 use crate::viewer::filming::SPEEDS;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
@@ -30,7 +31,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let left = left.with_max_x(left.right() - theme::GUTTER);
     let mut hands = ui.new_child(UiBuilder::new().id_salt("film").max_rect(left));
     ScrollArea::vertical().auto_shrink(false).show(&mut hands, |ui| {
-        let as_table = title(ui, film, commands);
+        let as_table = title(ui, state, film, commands);
         player(ui, state, commands);
         ui.add(Label::new(film.tell(at)).wrap());
         if let Some(text) = about_moves(state, film, at) {
@@ -100,13 +101,14 @@ const fn help(order: Order) -> &'static str {
 }
 
 /// The order, the way out, and whether costs are wanted in rows.
-fn title(ui: &mut Ui, film: &Film, commands: &mut Commands) -> bool {
+fn title(ui: &mut Ui, state: &State, film: &Film, commands: &mut Commands) -> bool {
     let row = ui.horizontal_wrapped(|ui| {
         label(ui);
         ui.add(Label::new("Reconstructed order").extend()).on_hover_text(help(film.order()));
         if ui.button("Close").on_hover_text("Put the film away.").accessible_name("Close the film").clicked() {
             commands.push(Command::CloseFilm);
         }
+        saves::show(ui, What::Film, state, commands);
         as_table::choice(ui, "SAH cost over the film")
     });
     row.inner

@@ -4,11 +4,12 @@ use eframe::egui::{
     Button, CursorIcon, DragValue, EventFilter, Id, Key, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::{Commands, as_table, empty, fact, heading, running};
+use super::{Commands, as_table, captions, empty, fact, heading, running, saves};
 use crate::lab::tile_times::{REPEATS, TILE};
 use crate::render::{Amounts, Histogram, Mode, Picture, Range};
 use crate::viewer::command::Command;
 use crate::viewer::format;
+use crate::viewer::sheets::What;
 use crate::viewer::state::{LEAST_SPAN, State};
 use crate::viewer::theme::{self, Palette};
 use crate::viewer::tiles::TERMS;
@@ -19,6 +20,27 @@ const KEY_STEPS: [f32; 2] = [8.0, 1.0];
 /// Whether there is anything to show.
 pub fn is_shown(state: &State) -> bool {
     state.model.is_some() && (state.settings.mode.is_heat() || state.tiles.shown)
+}
+
+/// A heat map that is on the screen.
+pub struct Shown<'a> {
+    /// Its picture.
+    pub picture: &'a Picture,
+    /// The amount of each pixel.
+    pub amounts: &'a Amounts,
+    /// What they are amounts of.
+    pub name: String,
+    /// What the ends of the colours stand for.
+    pub range: Range,
+}
+
+/// The heat map on the screen, if there is one.
+pub fn on_screen(state: &State) -> Option<Shown<'_>> {
+    // Until tiles are timed the picture is another one.
+    let other = !is_shown(state) || (state.tiles.shown && !state.shows_tiles());
+    let picture = state.on_screen().filter(|_| !other)?;
+    let (name, range) = (captions::heat(state)?.name, state.range.unwrap_or(picture.range));
+    Some(Shown { picture, amounts: picture.amounts.as_ref()?, name, range })
 }
 
 /// Draws the section, if there is one.
@@ -33,11 +55,14 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if let Some(why) = state.why_no_stack().filter(|_| state.settings.mode == Mode::Stack && !state.tiles.shown) {
         empty(ui, why);
     }
-    // Until tiles are timed the picture is another one.
-    let other = state.tiles.shown && !state.shows_tiles();
-    if let Some((picture, amounts)) = state.on_screen().filter(|_| !other).and_then(|p| Some((p, p.amounts.as_ref()?))) {
-        ends(ui, state, picture, &amounts.histogram, commands);
-        if as_table::choice(ui, "heat map") {
+    if let Some(Shown { picture, amounts, range, .. }) = on_screen(state) {
+        ends(ui, range, &amounts.histogram, commands);
+        let as_table = ui.horizontal_wrapped(|ui| {
+            let chosen = as_table::choice(ui, "heat map");
+            saves::show(ui, What::Heat, state, commands);
+            chosen
+        });
+        if as_table.inner {
             bins(ui, &amounts.histogram);
         }
         typed(ui, state, picture.range, amounts, commands);
@@ -100,12 +125,11 @@ impl Scale {
 }
 
 /// The histogram, and the ends of the range that are dragged over it.
-fn ends(ui: &mut Ui, state: &State, picture: &Picture, histogram: &Histogram, commands: &mut Commands) {
+fn ends(ui: &mut Ui, range: Range, histogram: &Histogram, commands: &mut Commands) {
     let palette = Palette::in_ui(ui);
     let size = vec2(ui.available_width(), theme::HISTOGRAM);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Histogram of the heat map"));
-    let range = state.range.unwrap_or(picture.range);
     // Room for the handles at either side; a range that was typed may lie beyond all amounts.
     let scale = Scale { rect: rect.shrink(theme::HANDLE), end: histogram.end().max(range.max) };
     ui.painter().rect_filled(rect, 0.0, palette.background);

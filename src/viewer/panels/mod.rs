@@ -30,6 +30,7 @@ pub mod overlay;
 pub mod palette;
 pub mod panes;
 pub mod path;
+pub mod predicted;
 pub mod prediction;
 pub mod ray;
 pub mod ray_list;
@@ -86,6 +87,15 @@ pub fn running(ui: &mut Ui, progress: &Progress, text: &str, (name, help): (&str
         ui.button("Cancel").accessible_name(name).on_hover_text(help).clicked()
     });
     row.inner
+}
+
+/// What is not among the rest, and why, in one line; all of it under the pointer.
+pub fn not_there(ui: &mut Ui, missing: impl IntoIterator<Item = String>) {
+    let missing = missing.into_iter().collect::<Vec<_>>().join(" ");
+    if !missing.is_empty() {
+        let text = RichText::new(format!("Not there: {missing}")).small().color(Palette::in_ui(ui).warn);
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(missing);
+    }
 }
 
 /// A sentence where there is nothing to show.

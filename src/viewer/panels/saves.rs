@@ -1,6 +1,6 @@
 //! A small menu beside each table and plot, which saves it.
 
-use eframe::egui::Ui;
+use eframe::egui::{Button, Ui};
 
 use super::Commands;
 use crate::viewer::command::Command;
@@ -14,15 +14,17 @@ pub fn show(ui: &mut Ui, what: What, state: &State, commands: &mut Commands) {
         return;
     }
     let menu = ui.menu_button("Save", |ui| {
-        let mut item = |text: &str, export: Export| {
-            if ui.button(text).clicked() {
+        let mut item = |text: &str, export: Export, possible: bool| {
+            let button = ui.add_enabled(possible, Button::new(text)).on_disabled_hover_text("Nothing to plot is measured yet.");
+            if button.clicked() {
                 commands.push(Command::Export(export));
             }
         };
-        item("Table as CSV…", Export::Table(what));
+        item("Table as CSV…", Export::Table(what), true);
         if what.has_plot() {
-            item("Plot as SVG…", Export::Plot(what, Form::Svg));
-            item("Plot as PNG…", Export::Plot(what, Form::Png));
+            let plotted = what.is_plotted(state);
+            item("Plot as SVG…", Export::Plot(what, Form::Svg), plotted);
+            item("Plot as PNG…", Export::Plot(what, Form::Png), plotted);
         }
     });
     let name = format!("Save {}", what.name());

@@ -1,15 +1,15 @@
 //! Time against the number of triangles: builds and rays, a curve for each structure.
 
-use eframe::egui::{Align, Button, Layout, ProgressBar, RichText, ScrollArea, Ui, vec2};
+use eframe::egui::{Align, Button, Layout, ProgressBar, ScrollArea, Ui, vec2};
 use egui_plot::{Legend, Line, LineStyle, MarkerShape, PlotPoints, Points};
 
 use super::axes::log_log;
-use super::{Commands, as_table, empty};
+use super::{Commands, as_table, empty, not_there};
 use crate::accel::registry;
 use crate::lab::scaling::{Exponent, Point, Scaling};
 use crate::viewer::command::Command;
 use crate::viewer::state::State;
-use crate::viewer::theme::{self, Palette};
+use crate::viewer::theme;
 use crate::viewer::{format, marks};
 
 /// The button, in the row above.
@@ -39,12 +39,7 @@ pub fn show(ui: &mut Ui, state: &State) {
         let measured = trade.growing.is_some();
         return empty(ui, if measured { "The model is made in growing sizes." } else { "Not measured. Press Measure." });
     }
-    let missing = trade.scaling.iter().filter_map(|row| Some(format!("{}: {}", row.id, row.error.as_ref()?)));
-    let missing = missing.collect::<Vec<_>>().join(" ");
-    if !missing.is_empty() {
-        let text = RichText::new(format!("Not there: {missing}")).small().color(Palette::in_ui(ui).warn);
-        ui.add(eframe::egui::Label::new(text).truncate()).on_hover_text(missing);
-    }
+    not_there(ui, trade.scaling.iter().filter_map(|row| Some(format!("{}: {}", row.id, row.error.as_ref()?))));
     if as_table::choice(ui, "time against triangles") {
         return table(ui, state);
     }

@@ -5,7 +5,7 @@ use eframe::egui::{Align, Align2, Button, Color32, ComboBox, Label, Layout, Prog
 use egui_plot::{Line, MarkerShape, PlotPoint, PlotPoints, PlotUi, Points, Text};
 
 use super::axes::log_log;
-use super::{Commands, as_table, empty};
+use super::{Commands, as_table, empty, not_there, predicted};
 use crate::accel::registry::{self, Family};
 use crate::geometry::tri::TestKind;
 use crate::lab::tradeoffs::front;
@@ -17,10 +17,12 @@ use crate::viewer::theme::{self, Palette};
 pub use crate::viewer::tradeoffs::Plot;
 use crate::viewer::tradeoffs::{Goodness, Miss};
 
-/// What is chosen, and the button, in the row above.
+/// What is chosen, or how far predictions are off, and the button, in the row above.
 pub fn controls(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let trade = &state.tradeoffs;
-    if trade.plot == Plot::Intersection {
+    if trade.plot == Plot::Prediction {
+        predicted::agreement(ui, state);
+    } else if trade.plot == Plot::Intersection {
         let combo = ComboBox::from_id_salt("miss").selected_text(trade.miss.name()).show_ui(ui, |ui| {
             for miss in Miss::ALL {
                 if ui.selectable_label(miss == trade.miss, miss.name()).clicked() {
@@ -165,12 +167,7 @@ pub fn show(ui: &mut Ui, state: &State) {
         ui.add(Label::new(RichText::new(help).small().color(palette.dim)).wrap());
         chosen
     });
-    let missing = trade.rows.iter().filter_map(|row| Some(format!("{}: {}", row.name, row.error.as_ref()?)));
-    let missing = missing.collect::<Vec<_>>().join(" ");
-    if !missing.is_empty() {
-        let label = Label::new(RichText::new(format!("Not there: {missing}")).small().color(palette.warn)).truncate();
-        ui.add(label).on_hover_text(missing);
-    }
+    not_there(ui, trade.rows.iter().filter_map(|row| Some(format!("{}: {}", row.name, row.error.as_ref()?))));
     if as_table.inner {
         return table(ui, &spots, &best, axes(state, trade.plot));
     }

@@ -8,7 +8,7 @@ use super::finished::sentence;
 use crate::accel::BuildCx;
 use crate::job::{Job, Outcome};
 use crate::lab::everything::{self, Amount, ReportError, Subject};
-use crate::lab::plot::{png_of, svg_of};
+use crate::lab::plot::png_of;
 use crate::render::Looks;
 use crate::scene::texture::Detail;
 use crate::scene::{CameraSpec, LoadCx};
@@ -82,12 +82,16 @@ impl State {
                 let budget = self.shared.budget.clone();
                 Box::new(move |cancel: &Cancel| rays.csv(&budget, cancel).map_err(|why| sentence(&why))) as Make
             }),
+            Export::Table(What::Film) => self.film_on_screen().map(|(film, _)| {
+                let film = Arc::clone(film);
+                Box::new(move |_: &Cancel| Ok(sheets::film(&film).csv().into_bytes())) as Make
+            }),
             Export::Table(what) => {
                 sheets::sheet(self, what).map(|sheet| Box::new(move |_: &Cancel| Ok(sheet.csv().into_bytes())) as Make)
             }
-            Export::Plot(what, form) => plots::panels(self, what).map(|panels| {
+            Export::Plot(what, form) => plots::drawing(self, what).map(|drawing| {
                 Box::new(move |_: &Cancel| {
-                    let svg = svg_of(&panels).map_err(|why| format!("Can't draw the plot: {why}."))?;
+                    let svg = drawing.svg().map_err(|why| format!("Can't draw the plot: {why}."))?;
                     match form {
                         Form::Svg => Ok(svg.into_bytes()),
                         Form::Png => png_of(&svg).map_err(|why| format!("Can't draw the plot: {why}.")),
