@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use boxwood::render::{Mode, Picture, Range};
+use boxwood::accel::Accel;
+use boxwood::render::sampler::Sampling;
+use boxwood::render::{self, Mode, Picture, Range, Until};
+use boxwood::task::{Cancel, Pool, Progress};
 use boxwood::viewer::ViewerOptions;
 use boxwood::viewer::panels::split::{Place, places};
 use boxwood::viewer::panes::{Arrange, Shows};
@@ -274,4 +277,61 @@ fn what_is_chosen_while_measuring_is_built_afterwards() {
     w.button("Close C");
     w.settle();
     assert_eq!(w.state().panes.all.len(), 1);
+}
+
+/// Chooses what is shown of a pane's hits.
+fn show_of(w: &mut Window, letter: &str, shows: &str) {
+    w.harness.get_by_role_and_label(Role::ComboBox, &format!("Picture of {letter}")).click();
+    w.step();
+    w.step();
+    w.button(shows);
+    w.settle();
+}
+
+/// The bytes of the present view through a structure, rendered alone.
+fn alone(s: &State, accel: &Arc<dyn Accel>, mode: Mode) -> Vec<u8> {
+    let (model, samples) = (s.model.as_ref().expect("open"), s.settings.max_samples);
+    let (scene, looks) = (Arc::clone(&model.scene), Arc::clone(&model.looks));
+    let whole = render::Job::new(scene, Arc::clone(accel), s.camera, mode, looks);
+    let job = render::Job { sampling: Sampling { kind: s.settings.sampler, seed: 0 }, ..whole };
+    let until = Until { adaptive: true, ..Until::samples(samples) };
+    let (pool, [width, height]) = (Pool::new("alone", 2), s.size_px);
+    let still = render::render(&job, (width, height), &until, &pool, &Cancel::new(), &Progress::new()).expect("not cancelled");
+    still.develop(&job, None, s.settings.tone, None, &pool)
+}
+
+#[test]
+fn a_path_traced_picture_stands_beside_any_other() {
+    let mut setup = setup(&["bvh", "kdtree"], Arrange::Divider, Mode::Shaded);
+    setup.options.model = Some("builtin:cornell-box".to_owned());
+    setup.options.samples = Some(4);
+    let mut w = Window::new(setup).settled();
+    let exposed = |w: &Window| w.has(Role::ComboBox, "Tone") && w.has(Role::ComboBox, "Sampler");
+    assert!(!exposed(&w));
+    show_of(&mut w, "B", Mode::Path.label());
+    assert!(w.state().settings.panes.others[0].shows == Shows::Mode(Mode::Path) && exposed(&w));
+    let as_alone = |w: &Window, modes: [Mode; 2]| {
+        let s = w.state();
+        let structures = [s.shown.as_ref(), s.panes.all[0].built.as_ref()].map(|built| &built.expect("built").accel);
+        for ((picture, accel), mode) in pictures(s).iter().zip(structures).zip(modes) {
+            assert!(picture.progress.done && picture.progress.samples == 4 && [picture.width, picture.height] == s.size_px);
+            assert!(picture.rgba == alone(s, accel, mode), "{} of {modes:?}", mode.id());
+            assert_eq!(picture.progress.exposure.is_some(), mode == Mode::Path);
+        }
+    };
+    as_alone(&w, [Mode::Shaded, Mode::Path]);
+    assert!(w.state().fitting_exposure().is_some());
+    // The first one, too, and other amounts beside it.
+    w.choose(Mode::Shaded.label(), Mode::Path.label());
+    w.settle();
+    assert!(w.state().is_split() && exposed(&w));
+    as_alone(&w, [Mode::Path, Mode::Path]);
+    show_of(&mut w, "B", Mode::Shaded.label());
+    as_alone(&w, [Mode::Path, Mode::Shaded]);
+    // Seconds of a picture that shares its threads are no curve.
+    let curves = |w: &Window| w.state().errors.curves.len();
+    assert!(curves(&w) == 0 && w.says("Errors are those of one picture, which has all threads to itself."));
+    w.button("One picture again");
+    w.settle();
+    assert!(w.state().panes.all.is_empty() && curves(&w) == 1);
 }

@@ -121,7 +121,7 @@ fn chosen_picture(ui: &mut Ui, (which, letter): (usize, &str), choice: &PaneChoi
     // Without amounts there is no difference of them.
     let plain = choice.shows == Shows::Difference && !state.settings.mode.is_heat();
     let combo = combo.selected_text(text(if plain { Shows::Same } else { choice.shows })).show_ui(ui, |ui| {
-        let offered = |mode: &Mode| *mode != Mode::Path && (*mode != Mode::Stack || has_stack(state, choice));
+        let offered = |mode: &Mode| *mode != Mode::Stack || has_stack(state, choice);
         let modes = Mode::ALL.into_iter().filter(offered).map(Shows::Mode);
         let differs = state.settings.mode.is_heat().then_some(Shows::Difference);
         for shows in std::iter::once(Shows::Same).chain(differs).chain(modes) {

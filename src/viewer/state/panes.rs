@@ -121,19 +121,32 @@ impl State {
         }
     }
 
-    /// Whether pictures stand beside the first. Where errors are measured against seconds nothing else is traced.
+    /// Whether pictures stand beside the first.
     pub fn is_comparing(&self) -> bool {
         self.offers_panes() && !self.settings.panes.on_screen().is_empty()
     }
 
     /// Whether pictures can stand beside the first.
     pub fn offers_panes(&self) -> bool {
-        self.settings.workspace == Workspace::Compare && self.settings.mode != Mode::Path && !self.tiles.shown
+        self.settings.workspace == Workspace::Compare && !self.tiles.shown
     }
 
     /// Whether all of those are there.
     pub fn is_split(&self) -> bool {
         self.is_comparing() && self.panes.all.iter().all(|pane| pane.picture.is_some()) && !self.panes.all.is_empty()
+    }
+
+    /// Whether a picture on the screen is path traced: then it matters how light becomes colour, and what samples are made of.
+    pub fn follows_light(&self) -> bool {
+        let first = self.settings.mode;
+        let beside = || self.settings.panes.on_screen().iter().any(|choice| choice.mode(first) == Mode::Path);
+        (first == Mode::Path && !self.tiles.shown) || (self.is_comparing() && beside())
+    }
+
+    /// The exposure that suits the first path traced picture on the screen.
+    pub fn fitting_exposure(&self) -> Option<f32> {
+        let beside = self.panes.all.iter().filter_map(|pane| pane.picture.as_ref());
+        self.picture.iter().chain(beside).find_map(|picture| picture.progress.exposure)
     }
 
     /// The pane that is being built.

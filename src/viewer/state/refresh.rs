@@ -45,7 +45,7 @@ impl State {
             textured: self.textures,
             sampler: self.settings.sampler,
             tone: self.settings.tone,
-            keeps: self.keeps_light(),
+            keeps: self.has_curves(),
         };
         if self.requested.as_ref() != Some(&asked) && !self.size_px.contains(&0) {
             let keep = asked.keeps.then(|| self.shared.budget.clone());
