@@ -6,12 +6,14 @@ use boxwood::accel::Accel;
 use boxwood::render::sampler::Sampling;
 use boxwood::render::{self, Mode, Picture, Range, Until};
 use boxwood::task::{Cancel, Pool, Progress};
-use boxwood::viewer::ViewerOptions;
+use boxwood::viewer::compared::spread;
 use boxwood::viewer::panels::split::{Place, places};
 use boxwood::viewer::panes::{Arrange, Shows};
 use boxwood::viewer::state::State;
+use boxwood::viewer::{ViewerOptions, format};
 use eframe::egui::{Key, Modifiers, PointerButton, Role, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
+use glam::Vec2;
 
 use crate::window::{Setup, Window};
 
@@ -334,4 +336,73 @@ fn a_path_traced_picture_stands_beside_any_other() {
     w.button("One picture again");
     w.settle();
     assert!(w.state().panes.all.is_empty() && curves(&w) == 1);
+}
+
+#[test]
+fn amounts_are_told_of_each_picture_and_those_of_one_range_counted_together() {
+    let mut w = compare(&["bvh", "kdtree", "grid"], Arrange::Divider, Mode::Nodes);
+    let counted = |w: &Window, which: &[usize]| {
+        let all = pictures(w.state());
+        let values = which.iter().flat_map(|i| all[*i].amounts.as_ref().expect("a heat map").values.clone());
+        let pixels = values.filter(|amount| amount.is_finite()).count();
+        let spread = spread(w.state()).expect("heat maps");
+        assert_eq!(spread.histogram.counts.iter().map(|pixels| *pixels as usize).sum::<usize>(), pixels);
+        assert!(pixels > 1000 && spread.histogram.end() > spread.range.max, "{pixels}");
+        spread.of
+    };
+    assert_eq!(counted(&w, &[0, 1, 2]), ["A", "B", "C"]);
+    assert!(w.says("Pixels of A, B and C together: they share the range."));
+    // A difference has amounts of its own, which have signs; C's are of another kind.
+    show_of(&mut w, "B", "A less B");
+    assert_eq!(counted(&w, &[0, 2]), ["A", "C"]);
+    show_of(&mut w, "C", Mode::Prims.label());
+    assert_eq!(counted(&w, &[0]), ["A"]);
+    assert!(!w.says("they share the range"));
+    let view = place(&w, 0).view;
+    let at = view.center() + vec2(10.3, 7.7);
+    let within = (at - view.min) / view.size();
+    let amounts: Vec<f32> = pictures(w.state())
+        .iter()
+        .map(|picture| picture.amount_at(Vec2::new(within.x * 2.0 - 1.0, 1.0 - within.y * 2.0)).expect("on the teapot"))
+        .collect();
+    let less = f64::from(amounts[0] - amounts[1]);
+    let sign = if less > 0.0 { "+" } else { "" };
+    let told = [
+        format!("A, BVH: {}", format::number(amounts[0].into())),
+        format!("A less B: {sign}{}", format::number(less)),
+        format!("C, Grid, primitives tested: {}", format::number(amounts[2].into())),
+    ];
+    w.harness.hover_at(at);
+    w.step();
+    w.step();
+    assert!(w.says(&format!("Here\n{}", told.join("\n"))), "{told:?}");
+    w.press_in_one_frame(at);
+    w.until("a selection", |s| s.picked.is_some());
+    w.settle();
+    w.harness.remove_cursor();
+    w.step();
+    w.step();
+    assert!(w.says(&format!("Clicked\n{}", told.join("\n"))), "{told:?}");
+    let said = w.harness.get_by_role(Role::Canvas).accesskit_node().description().unwrap_or_default();
+    assert!(told.iter().all(|told| said.contains(&format!("{told} at the clicked pixel"))), "{said}");
+}
+
+#[test]
+fn a_heat_map_beside_a_shaded_picture_has_a_histogram_and_a_range() {
+    let mut w = compare(&["bvh", "kdtree"], Arrange::Two, Mode::Shaded);
+    assert!(spread(w.state()).is_none() && !w.has(Role::Image, "Histogram of the heat map"));
+    show_of(&mut w, "B", Mode::Nodes.label());
+    assert_eq!(spread(w.state()).map(|spread| spread.of), Some(vec!["B"]));
+    assert!(w.has(Role::Image, "Histogram of the heat map") && !w.has(Role::ComboBox, "Rays of the heat map"));
+    w.click(Role::SpinButton, "Least amount");
+    w.key(Modifiers::COMMAND, Key::A);
+    w.harness.event(eframe::egui::Event::Text("2".to_owned()));
+    w.step();
+    w.key(Modifiers::NONE, Key::Enter);
+    w.settle();
+    assert_eq!(pictures(w.state())[1].range.min, 2.0);
+    // Of other amounts it is another range.
+    show_of(&mut w, "B", Mode::Prims.label());
+    let all = pictures(w.state());
+    assert!(w.state().range.is_none() && all[1].range == all[1].suits);
 }

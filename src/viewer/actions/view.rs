@@ -34,9 +34,9 @@ pub(super) fn add(list: &mut List, state: &State) {
         list.add(format!("Picture: {}", mode.label()), Command::Mode(mode)).if_possible(state.offers(mode) && other);
     }
     list.add(format!("Picture: {}", toolbar::TILES), Command::ShowTiles(true)).if_possible(open && !state.tiles.shown);
-    let heat = heat::is_shown(state);
+    let (heat, rays_chosen) = (heat::is_shown(state), heat::has_rays(state));
     for rays in HeatRays::ALL {
-        let other = heat && rays != state.settings.heat_rays;
+        let other = rays_chosen && rays != state.settings.heat_rays;
         list.add(format!("Heat map: {}", rays.label()), Command::HeatRays(rays)).if_possible(other);
     }
     list.add("Heat map: fit the range", Command::HeatRange(None)).if_possible(heat && state.range.is_some());

@@ -6,8 +6,9 @@ use eframe::egui::{
 
 use super::{Commands, as_table, empty, fact, heading, running};
 use crate::lab::tile_times::{REPEATS, TILE};
-use crate::render::{Amounts, Histogram, Mode, Picture, Range};
+use crate::render::{Histogram, Mode, Range};
 use crate::viewer::command::Command;
+use crate::viewer::compared::{self, Spread};
 use crate::viewer::format;
 use crate::viewer::state::{LEAST_SPAN, State};
 use crate::viewer::theme::{self, Palette};
@@ -18,7 +19,12 @@ const KEY_STEPS: [f32; 2] = [8.0, 1.0];
 
 /// Whether there is anything to show.
 pub fn is_shown(state: &State) -> bool {
-    state.model.is_some() && (state.settings.mode.is_heat() || state.tiles.shown)
+    state.model.is_some() && (state.heat_kind().is_some() || state.tiles.shown)
+}
+
+/// Whether it is chosen whose work is shown: beside a picture that shows none, heat maps are those of the camera's rays.
+pub fn has_rays(state: &State) -> bool {
+    is_shown(state) && (state.settings.mode.is_heat() || state.tiles.shown)
 }
 
 /// Draws the section, if there is one.
@@ -35,16 +41,41 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
     // Until tiles are timed the picture is another one.
     let other = state.tiles.shown && !state.shows_tiles();
-    if let Some((picture, amounts)) = state.on_screen().filter(|_| !other).and_then(|p| Some((p, p.amounts.as_ref()?))) {
-        ends(ui, state, picture, &amounts.histogram, commands);
-        if as_table::choice(ui, "heat map") {
-            bins(ui, &amounts.histogram);
-        }
-        typed(ui, state, picture.range, amounts, commands);
-        let help = "The amount of the pixel that was last clicked. Under the pointer it is told beside the colours, where one picture is shown.";
-        fact(ui, "Clicked pixel", format::or_missing(state.clicked_amount(), |x| format::number(x.into())), help);
+    if let Some(spread) = compared::spread(state).filter(|_| !other) {
+        spread_of(ui, state, &spread, commands);
+        clicked(ui, state);
     }
     ui.separator();
+}
+
+/// How amounts are spread, and the range of their colours.
+fn spread_of(ui: &mut Ui, state: &State, spread: &Spread, commands: &mut Commands) {
+    if let [others @ .., last] = &spread.of[..]
+        && !others.is_empty()
+    {
+        empty(ui, &format!("Pixels of {} and {last} together: they share the range.", others.join(", ")));
+    }
+    let range = state.range.unwrap_or(spread.range);
+    ends(ui, range, &spread.histogram, commands);
+    if as_table::choice(ui, "heat map") {
+        bins(ui, &spread.histogram);
+    }
+    typed(ui, state, range, spread.histogram.width, commands);
+}
+
+/// The amount of the pixel that was last clicked, of each picture.
+fn clicked(ui: &mut Ui, state: &State) {
+    let help = "The amount of the pixel that was last clicked. Under the pointer it is told over the picture.";
+    if !state.is_comparing() {
+        let amount = format::or_missing(state.clicked_amount(), |x| format::number(x.into()));
+        return fact(ui, "Clicked pixel", amount, help);
+    }
+    let told = compared::told_of_click(state);
+    if told.is_empty() {
+        return fact(ui, "Clicked pixel", format::or_missing(None::<f32>, |_| String::new()), help);
+    }
+    empty(ui, "Clicked pixel");
+    told.iter().for_each(|told| fact(ui, &told.of, told.written(), help));
 }
 
 /// The times of tiles: how to get them, and what they come to.
@@ -100,12 +131,11 @@ impl Scale {
 }
 
 /// The histogram, and the ends of the range that are dragged over it.
-fn ends(ui: &mut Ui, state: &State, picture: &Picture, histogram: &Histogram, commands: &mut Commands) {
+fn ends(ui: &mut Ui, range: Range, histogram: &Histogram, commands: &mut Commands) {
     let palette = Palette::in_ui(ui);
     let size = vec2(ui.available_width(), theme::HISTOGRAM);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Histogram of the heat map"));
-    let range = state.range.unwrap_or(picture.range);
     // Room for the handles at either side; a range that was typed may lie beyond all amounts.
     let scale = Scale { rect: rect.shrink(theme::HANDLE), end: histogram.end().max(range.max) };
     ui.painter().rect_filled(rect, 0.0, palette.background);
@@ -184,11 +214,9 @@ fn handle(ui: &Ui, id: Id, name: &str, scale: Scale, amount: f32, step: f32) -> 
 }
 
 /// The ends as numbers, and the range that fits.
-fn typed(ui: &mut Ui, state: &State, fitting: Range, amounts: &Amounts, commands: &mut Commands) {
-    let before = state.range.unwrap_or(fitting);
-    let Range { mut min, mut max } = before;
+fn typed(ui: &mut Ui, state: &State, Range { mut min, mut max }: Range, width: f32, commands: &mut Commands) {
     ui.horizontal_wrapped(|ui| {
-        let speed = f64::from(0.25 * amounts.histogram.width);
+        let speed = f64::from(0.25 * width);
         let mut field = |value: &mut f32, prefix: &str, name: &str, help: &str| {
             let field = DragValue::new(value).range(0.0..=f32::MAX).speed(speed).max_decimals(1).prefix(prefix);
             ui.add(field).accessible_name(name).on_hover_text(help).changed()

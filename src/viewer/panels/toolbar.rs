@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.spacing_mut().slider_width = theme::SHORT_SLIDER;
     let look = |ui: &mut Ui, commands: &mut Commands| {
         mode(ui, state, commands);
-        if heat::is_shown(state) {
+        if heat::has_rays(state) {
             heat_rays(ui, state, commands);
         }
         if state.settings.mode == Mode::Path && !state.tiles.shown {

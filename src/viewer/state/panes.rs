@@ -8,7 +8,7 @@ use crate::accel::BuildError;
 use crate::accel::registry;
 use crate::job::{Job, Outcome};
 use crate::render::{Mode, Picture, Renderer};
-use crate::task::Cancelled;
+use crate::task::{Cancel, Cancelled, Progress};
 use crate::viewer::gpu::Overlay;
 use crate::viewer::kept::{Built, Key};
 use crate::viewer::overlay::{Collected, Known, Wanted};
@@ -108,6 +108,15 @@ impl State {
                 self.settings.panes.dividers.clear();
                 self.panes.tuned = None;
             }
+        }
+    }
+
+    /// Changes which pictures stand beside: a range that the user has set is one of the amounts that it was set for.
+    pub(super) fn change_panes(&mut self, change: impl FnOnce(&mut Self)) {
+        let kind = self.heat_kind();
+        change(self);
+        if kind != self.heat_kind() {
+            self.range = None;
         }
     }
 
@@ -295,7 +304,9 @@ impl State {
         if pane.differing.is_some() || pane.differs_for == Some(of) {
             return;
         }
-        let job = Job::spawn("difference", self.shared.waker(), move |cancel, _| shown::amounts_less(&first, &second, cancel));
+        let pool = self.shared.pool.clone();
+        let work = move |cancel: &Cancel, _: &Progress| pool.run(|| shown::amounts_less(&first, &second, cancel));
+        let job = Job::spawn("difference", self.shared.waker(), work);
         pane.differing = job.ok().map(|job| (of, job));
     }
 
