@@ -2,6 +2,7 @@
 //! view, since a tree has more cells than any screen shows.
 
 mod found;
+mod lit;
 #[cfg(test)]
 mod tests;
 
@@ -41,13 +42,15 @@ pub struct Wanted {
     pub counted: Option<u64>,
     /// The position of the film that is shown instead of depths.
     pub film_at: Option<u32>,
+    /// What colours of amounts go from and to, where several pictures share that; by themselves if `None`.
+    pub range: Option<[f32; 2]>,
 }
 
 impl Wanted {
     /// All that the settings switch on, in colours that need no rows.
     pub const fn new(settings: OverlaySettings, view: View, size_px: [u32; 2], limit: usize) -> Self {
-        let (top, root, counted, film_at) = (None, None, None, None);
-        Self { settings, view, size_px, limit, top, root, numbered: false, counted, film_at }
+        let (top, root, counted, film_at, range) = (None, None, None, None, None);
+        Self { settings, view, size_px, limit, top, root, numbered: false, counted, film_at, range }
     }
 }
 
@@ -77,6 +80,8 @@ pub struct Collected {
     pub other_forms: bool,
     /// What colours go from and to, if they do not stand for depths.
     pub range: Option<[f32; 2]>,
+    /// The least and the greatest of the amounts that they stand for.
+    pub amounts: Option<[f32; 2]>,
 }
 
 /// Boxes smaller than this many pixels are not drawn.
@@ -143,45 +148,9 @@ pub fn collect(accel: &dyn Accel, known: &Known, wanted: &Wanted, cancel: &Cance
     stopped?;
     let mut collected = collector.finish(accel, cancel)?;
     if let Some((film, at)) = film {
-        light(accel, film, at, (wanted, cancel), &mut collected)?;
+        lit::light(accel, film, at, (wanted, cancel), &mut collected)?;
     }
     Ok(collected)
-}
-
-/// The most parts that a cell is divided into that stand out.
-const MOST_LIT: usize = 32;
-
-/// The cell that was just divided or merged, and its parts; and the plane between them.
-fn light(
-    accel: &dyn Accel,
-    film: &Film,
-    at: u32,
-    (wanted, cancel): (&Wanted, &Cancel),
-    collected: &mut Collected,
-) -> Result<(), Cancelled> {
-    let Some(row) = film.just(at) else { return Ok(()) };
-    let cells = film.outline().cells(accel, row, cancel)?;
-    let Some(cell) = cells.last() else { return Ok(()) };
-    let mut lit = Vec::new();
-    accel.children(cell, &mut |part| {
-        lit.push(part);
-        if lit.len() <= MOST_LIT { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    });
-    if lit.len() > MOST_LIT {
-        lit.clear();
-    }
-    lit.push(*cell);
-    let overlay = &mut collected.overlay;
-    for cell in lit {
-        let wires = wires::of_cell(accel, &cell, &wanted.view, [u8::MAX; 4]);
-        overlay.lit.extend(wires.boxed);
-        overlay.lit_lines.extend(wires.lines);
-    }
-    if let Some(Split::Axis { axis, pos }) = cell.split.filter(|_| wanted.settings.planes) {
-        let plane = plane_in(cell.shape.bounds(), axis, pos);
-        overlay.planes.push(placed(accel, cell.id.instance, &plane, theme::TRIED.to_array()));
-    }
-    Ok(())
 }
 
 impl Collector<'_> {
@@ -352,19 +321,20 @@ impl Collector<'_> {
         let by_depth = self.wanted.settings.color == BoxColor::Depth;
         let values = shapes.iter().map(|(found, _)| found.value).filter(|value| value.is_finite());
         let [low, high] = values.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+        let amounts = (!by_depth && low <= high).then_some([low, high]);
+        let range = amounts.map(|amounts| self.wanted.range.unwrap_or(amounts));
         let mut overlay = Overlay::default();
         for (found, drawn) in &shapes {
             let color = match () {
                 () if by_depth => theme::depth_color(found.depth, &shown),
-                () if found.value.is_finite() => theme::amount_color(found.value, [low, high]),
+                () if found.value.is_finite() => theme::amount_color(found.value, range.unwrap_or([low, high])),
                 () => theme::UNKNOWN,
             };
             self.draw(accel, found, drawn, color.to_array(), &mut overlay);
         }
         let other_forms = !overlay.lines.is_empty();
         overlay.planes.extend(self.wanted.view.section.map(|section| section_in(&section, accel.geometry().space().bounds())));
-        let range = (!by_depth && low <= high).then_some([low, high]);
-        Ok(Collected { overlay, shown: shapes.len(), total: self.total, more: self.more, other_forms, range })
+        Ok(Collected { overlay, shown: shapes.len(), total: self.total, more: self.more, other_forms, range, amounts })
     }
 
     fn draw(&self, accel: &dyn Accel, found: &Found, drawn: &Drawn, color: [u8; 4], overlay: &mut Overlay) {

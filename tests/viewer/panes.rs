@@ -9,9 +9,10 @@ use boxwood::task::{Cancel, Pool, Progress};
 use boxwood::viewer::compared::spread;
 use boxwood::viewer::panels::split::{Place, places};
 use boxwood::viewer::panes::{Arrange, Shows};
+use boxwood::viewer::settings::BoxColor;
 use boxwood::viewer::state::State;
-use boxwood::viewer::{ViewerOptions, format};
-use eframe::egui::{Key, Modifiers, PointerButton, Role, vec2};
+use boxwood::viewer::{ViewerOptions, format, theme};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::Vec2;
 
@@ -32,6 +33,15 @@ fn setup(ids: &[&str], arrange: Arrange, mode: Mode) -> Setup {
 
 fn compare(ids: &[&str], arrange: Arrange, mode: Mode) -> Window {
     Window::new(setup(ids, arrange, mode)).settled()
+}
+
+/// Does something that is found by its name.
+fn by_name(w: &mut Window, name: &str) {
+    w.key(Modifiers::COMMAND, Key::P);
+    w.harness.event(Event::Text(name.to_owned()));
+    w.step();
+    w.key(Modifiers::NONE, Key::Enter);
+    w.step();
 }
 
 /// The pictures on the screen, that of the shown structure first.
@@ -266,11 +276,7 @@ fn what_is_chosen_while_measuring_is_built_afterwards() {
     w.button("Measure");
     w.until("it measures", State::is_measuring);
     // A structure that is chosen meanwhile is built afterwards.
-    w.key(Modifiers::COMMAND, Key::P);
-    w.harness.event(eframe::egui::Event::Text("Compare also with Grid".to_owned()));
-    w.step();
-    w.key(Modifiers::NONE, Key::Enter);
-    w.step();
+    by_name(&mut w, "Compare also with Grid");
     assert_eq!(ids(&w), ["kdtree", "grid"]);
     assert!(w.state().panes.all.get(1).is_none_or(|pane| pane.built.is_none() && pane.building.is_none()));
     w.button("Cancel");
@@ -396,7 +402,7 @@ fn a_heat_map_beside_a_shaded_picture_has_a_histogram_and_a_range() {
     assert!(w.has(Role::Image, "Histogram of the heat map") && !w.has(Role::ComboBox, "Rays of the heat map"));
     w.click(Role::SpinButton, "Least amount");
     w.key(Modifiers::COMMAND, Key::A);
-    w.harness.event(eframe::egui::Event::Text("2".to_owned()));
+    w.harness.event(Event::Text("2".to_owned()));
     w.step();
     w.key(Modifiers::NONE, Key::Enter);
     w.settle();
@@ -405,4 +411,31 @@ fn a_heat_map_beside_a_shaded_picture_has_a_histogram_and_a_range() {
     show_of(&mut w, "B", Mode::Prims.label());
     let all = pictures(w.state());
     assert!(w.state().range.is_none() && all[1].range == all[1].suits);
+}
+
+#[test]
+fn boxes_over_all_pictures_have_the_chosen_colours_over_one_range() {
+    let mut w = compare(&["bvh", "bvh", "kdtree"], Arrange::Four, Mode::Shaded);
+    let boxes = |w: &Window, which: usize| {
+        let overlays = std::iter::once(&w.state().overlay).chain(w.state().panes.all.iter().map(|pane| &pane.overlay));
+        overlays.map(|overlay| overlay.as_ref().expect("collected").boxes.clone()).nth(which).expect("one each")
+    };
+    let by_depth = boxes(&w, 2);
+    for color in [BoxColor::Triangles, BoxColor::Cost, BoxColor::Overlap, BoxColor::Visits] {
+        by_name(&mut w, &format!("Colour boxes by {}", color.name()));
+        w.settle();
+        assert_eq!(w.state().settings.overlay.color, color);
+        // Visits are those of as many rays as some seconds allow.
+        let alike = color == BoxColor::Visits || boxes(&w, 0) == boxes(&w, 1);
+        assert!(alike && !boxes(&w, 0).is_empty() && boxes(&w, 0).len() == boxes(&w, 1).len(), "one structure: {color:?}");
+        let known = boxes(&w, 2).iter().filter(|b| b.color != theme::UNKNOWN.to_array()).count();
+        // Cells that divide space do not overlap.
+        assert_eq!(known, if color == BoxColor::Overlap { 0 } else { boxes(&w, 2).len() }, "{color:?}");
+        assert!(boxes(&w, 2) != by_depth && !by_depth.is_empty(), "{color:?}");
+        let (range, own) = (w.state().collected.range.expect("amounts"), w.state().collected.amounts.expect("amounts"));
+        assert!(range[0] <= own[0] && own[1] <= range[1], "{color:?}: {range:?} holds {own:?}");
+    }
+    by_name(&mut w, "Colour boxes by Depth");
+    w.settle();
+    assert_eq!(boxes(&w, 2), by_depth);
 }
