@@ -30,6 +30,13 @@ impl Amounts {
     pub fn new(values: Vec<f32>) -> Self {
         Self { histogram: Histogram::of(&values), values }
     }
+
+    /// Of differences of amounts, which have signs: the histogram is that of their sizes. Runs on the threads of the pool that it
+    /// is called in.
+    pub fn of_differences(values: Vec<f32>) -> Self {
+        let sizes: Vec<f32> = values.par_iter().map(|x| x.abs()).collect();
+        Self { histogram: Histogram::of(&sizes), values }
+    }
 }
 
 impl Amounts {
@@ -55,7 +62,7 @@ impl Amounts {
 /// How many pixels have how much, in bins of one width from 0 on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
-    /// Of a bin: a whole number, so that each stands for as many counts.
+    /// Of a bin: a power of two from 1 on, so that each stands for as many counts, and histograms can be added.
     pub width: f32,
     /// Pixels in each; the greatest amount is in the last.
     pub counts: Vec<u32>,
@@ -71,7 +78,10 @@ impl Histogram {
         let chunks = || values.par_chunks(CHUNK);
         let greatest = chunks().map(|chunk| chunk.iter().copied().filter(|x| x.is_finite()).fold(0.0, f32::max));
         let greatest = greatest.reduce(|| 0.0, f32::max);
-        let width = ((greatest + 1.0) / BINS as f32).ceil().max(1.0);
+        let mut width = 1.0;
+        while width * (BINS as f32) < greatest + 1.0 {
+            width *= 2.0;
+        }
         let bin = |x: f32| floor_index(f64::from(x.max(0.0) / width), BINS - 1);
         let count = |chunk: &[f32]| {
             let mut counts = vec![0; bin(greatest) + 1];
@@ -80,6 +90,21 @@ impl Histogram {
         };
         let sum = |a: Vec<u32>, b: Vec<u32>| a.iter().zip(&b).map(|(a, b)| a + b).collect();
         let counts = chunks().map(count).reduce(|| vec![0; bin(greatest) + 1], sum);
+        Self { width, counts }
+    }
+
+    /// Of the pixels of both.
+    pub fn with(&self, other: &Self) -> Self {
+        let width = self.width.max(other.width);
+        let last = floor_index(f64::from(self.end().max(other.end()) / width).ceil(), BINS) - 1;
+        let mut counts = vec![0_u32; last + 1];
+        for of in [self, other] {
+            for (i, count) in of.counts.iter().enumerate() {
+                // A bin of the finer one lies in one of the coarser.
+                let bin = floor_index(i as f64 * f64::from(of.width / width), last);
+                counts[bin] = counts[bin].saturating_add(*count);
+            }
+        }
         Self { width, counts }
     }
 
@@ -104,6 +129,25 @@ mod tests {
         let wide = Amounts::new(vec![0.0, 639.9, 640.0, 1000.0]).histogram;
         assert_eq!((wide.width, wide.counts.len(), wide.counts[39], wide.counts[40]), (16.0, 63, 1, 1));
         assert!(wide.end() > 1000.0);
+    }
+
+    #[test]
+    fn histograms_add_up_bin_by_bin() {
+        let [few, many]: [Vec<f32>; 2] = [(0..37).map(|i| i as f32).collect(), (0..900).map(|i| (i % 301) as f32).collect()];
+        let of = |values: &[f32]| Histogram::of(values);
+        let both = of(&few).with(&of(&many));
+        assert_eq!(both, of(&[few.clone(), many.clone()].concat()), "as if they were counted together");
+        assert_eq!((both.width, of(&few).width), (8.0, 1.0));
+        assert_eq!(both, of(&many).with(&of(&few)));
+        let none = of(&[]);
+        assert_eq!(of(&many).with(&none), of(&many));
+        assert_eq!(none.with(&none), none);
+    }
+
+    #[test]
+    fn differences_keep_their_signs() {
+        let less = Amounts::of_differences(vec![-3.0, 2.0, f32::NAN, 0.0]);
+        assert_eq!((less.values[0], less.histogram.counts), (-3.0, vec![1, 0, 1, 1]));
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub enum Export {
     Table(What),
     /// A plot.
     Plot(What, Form),
-    /// The view with its boxes as lines, as SVG.
+    /// The view with its boxes as lines, or all compared ones as they stand, as SVG.
     Figure,
     /// The traced picture alone, or all compared ones as they stand, as PNG.
     Picture,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::compared;
 use super::figure;
 use super::panes::Arrange;
 use super::state::State;
@@ -22,10 +23,9 @@ pub struct Mosaic {
 impl Mosaic {
     /// The pictures on the screen; `None` while the first is not there.
     pub fn of(state: &State) -> Option<Self> {
-        let (first, panes) = (Arc::clone(state.on_screen()?), &state.settings.panes);
-        let pictured = state.panes.all.iter().zip(panes.on_screen());
-        let others = pictured.map(|(pane, choice)| pane.on_screen(choice.differs(state.settings.mode)).cloned());
-        let pictures = std::iter::once(Some(first)).chain(others).collect();
+        let panes = &state.settings.panes;
+        state.on_screen()?;
+        let pictures = compared::shown(state).into_iter().map(|shown| shown.picture.cloned()).collect();
         let view = state.size_px.map(|side| side.max(1));
         Some(Self { arrange: panes.arrange, dividers: panes.places(), view, pictures })
     }

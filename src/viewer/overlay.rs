@@ -2,6 +2,7 @@
 //! view, since a tree has more cells than any screen shows.
 
 mod found;
+mod lit;
 #[cfg(test)]
 mod tests;
 
@@ -11,12 +12,12 @@ use std::sync::Arc;
 use super::gpu::{BoxInstance, Overlay, Ruler, View};
 use super::settings::{BoxColor, Levels, OverlaySettings};
 use super::{theme, wires};
+use crate::accel::Accel;
 use crate::accel::cell::{Cell, CellKind, Descend, Layout, Level, Shape, Split, bounds_in_scene, walk_below};
 use crate::accel::outline::{Outline, Row};
-use crate::accel::{Accel, Moved};
 use crate::geometry::{Aabb, Axis, HalfSpace};
 use crate::lab::Visits;
-use crate::lab::film::{Film, Replay, Seen};
+use crate::lab::film::{Film, Seen};
 use crate::task::{Cancel, Cancelled};
 use found::{BOX_EDGES, Drawn, Found};
 
@@ -41,13 +42,15 @@ pub struct Wanted {
     pub counted: Option<u64>,
     /// The position of the film that is shown instead of depths.
     pub film_at: Option<u32>,
+    /// What colours of amounts go from and to, where several pictures share that; by themselves if `None`.
+    pub range: Option<[f32; 2]>,
 }
 
 impl Wanted {
     /// All that the settings switch on, in colours that need no rows.
     pub const fn new(settings: OverlaySettings, view: View, size_px: [u32; 2], limit: usize) -> Self {
-        let (top, root, counted, film_at) = (None, None, None, None);
-        Self { settings, view, size_px, limit, top, root, numbered: false, counted, film_at }
+        let (top, root, counted, film_at, range) = (None, None, None, None, None);
+        Self { settings, view, size_px, limit, top, root, numbered: false, counted, film_at, range }
     }
 }
 
@@ -77,6 +80,8 @@ pub struct Collected {
     pub other_forms: bool,
     /// What colours go from and to, if they do not stand for depths.
     pub range: Option<[f32; 2]>,
+    /// The least and the greatest of the amounts that they stand for.
+    pub amounts: Option<[f32; 2]>,
 }
 
 /// Boxes smaller than this many pixels are not drawn.
@@ -148,55 +153,11 @@ pub fn collect(accel: &dyn Accel, known: &Known, wanted: &Wanted, cancel: &Cance
     stopped?;
     let mut collected = collector.finish(accel, cancel)?;
     match film {
-        Some(Seen::Cells(replay, at, _)) => light(accel, replay, at, (wanted, cancel), &mut collected)?,
-        Some(Seen::Moves(moves, _)) => light_moves(moves, &mut collected.overlay),
+        Some(Seen::Cells(replay, at, _)) => lit::light(accel, replay, at, (wanted, cancel), &mut collected)?,
+        Some(Seen::Moves(moves, _)) => lit::light_moves(moves, &mut collected.overlay),
         Some(Seen::Finished(_)) | None => {}
     }
     Ok(collected)
-}
-
-/// Nodes that were moved, with the parents that they had and have.
-fn light_moves(moves: &[Moved], overlay: &mut Overlay) {
-    for moved in moves {
-        let colored = [(&moved.from, theme::MOVED_FROM), (&moved.to, theme::MOVED_TO), (&moved.node, theme::TRIED)];
-        overlay.lit.extend(colored.map(|(bounds, color)| BoxInstance::new(bounds, color.to_array())));
-    }
-}
-
-/// The most parts that a cell is divided into that stand out.
-const MOST_LIT: usize = 32;
-
-/// The cell that was just divided or merged, and its parts; and the plane between them.
-fn light(
-    accel: &dyn Accel,
-    replay: &Replay,
-    at: u32,
-    (wanted, cancel): (&Wanted, &Cancel),
-    collected: &mut Collected,
-) -> Result<(), Cancelled> {
-    let Some(row) = replay.just(at) else { return Ok(()) };
-    let cells = replay.outline().cells(accel, row, cancel)?;
-    let Some(cell) = cells.last() else { return Ok(()) };
-    let mut lit = Vec::new();
-    accel.children(cell, &mut |part| {
-        lit.push(part);
-        if lit.len() <= MOST_LIT { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    });
-    if lit.len() > MOST_LIT {
-        lit.clear();
-    }
-    lit.push(*cell);
-    let overlay = &mut collected.overlay;
-    for cell in lit {
-        let wires = wires::of_cell(accel, &cell, &wanted.view, [u8::MAX; 4]);
-        overlay.lit.extend(wires.boxed);
-        overlay.lit_lines.extend(wires.lines);
-    }
-    if let Some(Split::Axis { axis, pos }) = cell.split.filter(|_| wanted.settings.planes) {
-        let plane = plane_in(cell.shape.bounds(), axis, pos);
-        overlay.planes.push(placed(accel, cell.id.instance, &plane, theme::TRIED.to_array()));
-    }
-    Ok(())
 }
 
 impl Collector<'_> {
@@ -367,19 +328,20 @@ impl Collector<'_> {
         let by_depth = self.wanted.settings.color == BoxColor::Depth;
         let values = shapes.iter().map(|(found, _)| found.value).filter(|value| value.is_finite());
         let [low, high] = values.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+        let amounts = (!by_depth && low <= high).then_some([low, high]);
+        let range = amounts.map(|amounts| self.wanted.range.unwrap_or(amounts));
         let mut overlay = Overlay::default();
         for (found, drawn) in &shapes {
             let color = match () {
                 () if by_depth => theme::depth_color(found.depth, &shown),
-                () if found.value.is_finite() => theme::amount_color(found.value, [low, high]),
+                () if found.value.is_finite() => theme::amount_color(found.value, range.unwrap_or([low, high])),
                 () => theme::UNKNOWN,
             };
             self.draw(accel, found, drawn, color.to_array(), &mut overlay);
         }
         let other_forms = !overlay.lines.is_empty();
         overlay.planes.extend(self.wanted.view.section.map(|section| section_in(&section, accel.geometry().space().bounds())));
-        let range = (!by_depth && low <= high).then_some([low, high]);
-        Ok(Collected { overlay, shown: shapes.len(), total: self.total, more: self.more, other_forms, range })
+        Ok(Collected { overlay, shown: shapes.len(), total: self.total, more: self.more, other_forms, range, amounts })
     }
 
     fn draw(&self, accel: &dyn Accel, found: &Found, drawn: &Drawn, color: [u8; 4], overlay: &mut Overlay) {

@@ -128,8 +128,8 @@ impl PaneChoice {
     /// What is traced for it, beside a picture A in some mode.
     pub fn mode(&self, first: Mode) -> Mode {
         match self.shows {
-            Shows::Mode(mode) if mode != Mode::Path => mode,
-            Shows::Same | Shows::Mode(_) | Shows::Difference => first,
+            Shows::Mode(mode) => mode,
+            Shows::Same | Shows::Difference => first,
         }
     }
 
@@ -291,5 +291,7 @@ mod tests {
         assert_eq!((less.mode(Mode::Prims), less.mode(Mode::Shaded)), (Mode::Prims, Mode::Shaded));
         let other = PaneChoice { shows: Shows::Mode(Mode::Leaves), ..of("kdtree") };
         assert_eq!(other.mode(Mode::Nodes), Mode::Leaves);
+        let light = PaneChoice { shows: Shows::Mode(Mode::Path), ..of("kdtree") };
+        assert_eq!((light.mode(Mode::Shaded), other.mode(Mode::Path)), (Mode::Path, Mode::Leaves));
     }
 }

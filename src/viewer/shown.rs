@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::render::colormap::difference;
-use crate::render::{Picture, Range, Tone, encode};
+use crate::render::{Amounts, Picture, Range, Tone, encode};
 use crate::task::{Cancel, Cancelled};
 
 /// Pictures that are not the renderer's count from the other end.
@@ -59,7 +59,8 @@ fn most(off: &[f32]) -> Option<f32> {
 }
 
 /// Amounts of the first picture less those of the second, in the second's place: blue where rays do more in the second, orange
-/// where they do in the first, clear where they do nothing in either.
+/// where they do in the first, clear where they do nothing in either. Its amounts are the differences. Runs on the threads of the
+/// pool that it is called in.
 ///
 /// # Errors
 /// [`Cancelled`] if asked to stop, or if one of them has no amounts, or they are of different sizes.
@@ -78,7 +79,8 @@ pub fn amounts_less(first: &Picture, second: &Picture, cancel: &Cancel) -> Resul
     };
     let rgba = off.iter().flat_map(pixel).collect();
     let range = Range { min: -most, max: most };
-    Ok(Picture { range, suits: range, ..in_place_of(second, [second.width, second.height], rgba) })
+    let amounts = Some(Arc::new(Amounts::of_differences(off)));
+    Ok(Picture { range, suits: range, amounts, ..in_place_of(second, [second.width, second.height], rgba) })
 }
 
 /// A difference where rays that do nothing in one of the structures count as 0 there.
@@ -98,7 +100,6 @@ fn byte(x: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::Amounts;
 
     #[test]
     fn too_dark_is_blue_and_too_bright_is_orange() {
@@ -138,6 +139,8 @@ mod tests {
         let ([r, _, b, _], [dr, _, db, _], same, [_, _, _, one], none) = (pixel(0), pixel(1), pixel(2), pixel(3), pixel(4));
         assert!(r > b + 60 && db > dr + 60, "more in the first is orange, more in the second blue");
         assert!(same.iter().all(|c| *c > 230) && one == 255 && none == [0; 4]);
+        let told = |x: f32| less.amount_at(glam::Vec2::new(x, 0.0));
+        assert_eq!([-0.8, -0.4, 0.4, 0.8].map(told), [Some(7.0), Some(-7.0), Some(-3.0), None]);
         assert!(amounts_less(&first, &of(None, 5), &Cancel::new()).is_err());
         assert!(amounts_less(&first, &of(Some(vec![1.0]), 1), &Cancel::new()).is_err());
         let cancel = Cancel::new();

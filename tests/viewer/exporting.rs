@@ -254,6 +254,37 @@ fn compared_pictures_are_saved_as_they_stand() {
 }
 
 #[test]
+fn the_figure_of_compared_pictures_has_all_of_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arrange, [across, down]) in [(Arrange::Divider, [1, 1]), (Arrange::Two, [2, 1]), (Arrange::Four, [2, 2])] {
+        let answer = folder.path().join(format!("{arrange:?}.svg"));
+        let mut setup = Setup { size: vec2(1400.0, 900.0), answer: Some(answer), ..Setup::default() };
+        setup.options.model = Some("builtin:teapot?triangles=1000".to_owned());
+        setup.options.mode = Some(Mode::Nodes);
+        setup.options.panes = ["bvh", "kdtree"].map(str::to_owned).to_vec();
+        setup.options.arrange = Some(arrange);
+        let mut w = Window::new(setup).settled();
+        w.button("File");
+        w.button("Save figure…");
+        let svg = fs::read_to_string(written(&mut w, "Figure")).expect("there");
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && !svg.contains("NaN"));
+        assert!(svg.contains("<title>A: BVH; B: k-d tree, boxes at depth ") && svg.contains("builtin:teapot"), "{arrange:?}");
+        // Each with what lies over it.
+        let over: Vec<&str> = svg.split("<g fill=\"none\"").skip(1).filter_map(|part| part.split("</g>").next()).collect();
+        assert!(svg.matches("<image ").count() == 2 && over.len() == 2, "{arrange:?}");
+        assert!(over.iter().all(|lines| lines.contains("<path d=\"M")) && over[0] != over[1], "{arrange:?}");
+        assert_eq!((svg.matches("<linearGradient ").count(), svg.matches(">Nodes visited a ray</text>").count()), (1, 1));
+        assert!(svg.contains(">A: nodes visited. BVH: ") && svg.contains(">B: nodes visited. k-d tree: "), "{arrange:?}");
+        let [width, height] = w.state().size_px;
+        let least = [width * across, height * down];
+        let of =
+            |name: &str| svg.split(&format!(" {name}=\"")).nth(1).and_then(|rest| rest.split('"').next()?.parse::<f32>().ok());
+        let size = ["width", "height"].map(|name| of(name).expect("a number") as u32);
+        assert!(size[0] >= least[0] && size[1] > least[1], "{arrange:?}: {size:?} of {least:?}");
+    }
+}
+
+#[test]
 fn a_dialog_that_is_closed_saves_nothing() {
     let mut setup = Setup::default();
     setup.options.model = Some("builtin:lecture".to_owned());

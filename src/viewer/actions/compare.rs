@@ -2,7 +2,6 @@
 
 use super::List;
 use crate::accel::registry;
-use crate::render::Mode;
 use crate::viewer::command::Command;
 use crate::viewer::panes::{Arrange, LETTERS, MOST, PaneChoice, Shows};
 use crate::viewer::state::State;
@@ -69,7 +68,7 @@ fn errors(list: &mut List, state: &State) {
         let possible = here && trade.plot == Plot::Model && goodness != trade.goodness;
         list.add(format!("Draw of structures: {}", goodness.name()), Command::Goodness(goodness)).if_possible(possible);
     }
-    let image = here && trade.plot == Plot::Image && state.settings.mode == Mode::Path;
+    let image = trade.plot == Plot::Image && state.has_curves();
     let (name, table) = if state.errors.as_table { ("Errors as plots", false) } else { ("Errors as a table", true) };
     list.add(name, Command::ErrorsAsTable(table)).if_possible(image);
     let shot = state.errors.chosen.is_some();

@@ -2,7 +2,6 @@
 
 use super::List;
 use crate::lab::Fairness;
-use crate::render::Mode;
 use crate::viewer::command::Command;
 use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
@@ -24,7 +23,7 @@ pub(super) fn add(list: &mut List, state: &State) {
         list.add(format!("Sort timings by {}", column.name()), Command::SortTimings(column));
     }
     list.add("Measure what leaving out saves", Command::MeasureNeeds).if_possible(free);
-    list.add("Make a reference", Command::MakeReference).if_possible(free && state.settings.mode == Mode::Path);
+    list.add("Make a reference", Command::MakeReference).if_possible(free && state.has_curves());
     list.add("Check this model", Command::CheckModel).if_possible(free);
     list.add("Run the stability lab", Command::RunLab).if_possible(!state.is_measuring() && !state.is_checking());
     let here = state.settings.workspace == Workspace::Check;

@@ -34,15 +34,15 @@ pub(super) fn add(list: &mut List, state: &State) {
         list.add(format!("Picture: {}", mode.label()), Command::Mode(mode)).if_possible(state.offers(mode) && other);
     }
     list.add(format!("Picture: {}", toolbar::TILES), Command::ShowTiles(true)).if_possible(open && !state.tiles.shown);
-    let heat = heat::is_shown(state);
+    let (heat, rays_chosen) = (heat::is_shown(state), heat::has_rays(state));
     for rays in HeatRays::ALL {
-        let other = heat && rays != state.settings.heat_rays;
+        let other = rays_chosen && rays != state.settings.heat_rays;
         list.add(format!("Heat map: {}", rays.label()), Command::HeatRays(rays)).if_possible(other);
     }
     list.add("Heat map: fit the range", Command::HeatRange(None)).if_possible(heat && state.range.is_some());
     light(list, state);
     for sampler in SamplerKind::ALL {
-        let path = state.settings.mode == Mode::Path && sampler != state.settings.sampler;
+        let path = state.follows_light() && sampler != state.settings.sampler;
         list.add(format!("Sampler: {}", sampler.label()), Command::Sampler(sampler)).if_possible(path);
     }
     for samples in [1, 16, 64, 256, 1024, 4096] {
@@ -54,7 +54,7 @@ pub(super) fn add(list: &mut List, state: &State) {
 
 /// How light becomes colour.
 fn light(list: &mut List, state: &State) {
-    let (now, path) = (state.settings.tone, state.settings.mode == Mode::Path && !state.tiles.shown);
+    let (now, path) = (state.settings.tone, state.follows_light());
     for curve in Curve::ALL {
         let tone = Tone { curve, ..now };
         list.add(format!("Tone: {}", curve.label()), Command::Tone(tone)).if_possible(path && tone != now);

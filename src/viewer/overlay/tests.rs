@@ -3,11 +3,13 @@
 use super::found::size_class;
 use super::*;
 use crate::accel::cell::walk;
+use crate::accel::stats::SahWeights;
 use crate::accel::volumes::KINDS;
 use crate::accel::{BuildCx, CellId, registry};
 use crate::geometry::Side;
 use crate::geometry::tri::TestKind;
 use crate::scene::{Camera, Geometry, LoadCx, Projection, open};
+use crate::task::{Budget, Progress};
 use glam::Vec3;
 
 /// A structure over a built-in scene, with a parameter set if one is named.
@@ -206,4 +208,30 @@ fn boxes_that_are_cut_away_are_left_out_and_the_plane_is_drawn() {
             assert_eq!(left.planes.len(), planes + 1, "{id}");
         }
     }
+}
+
+#[test]
+fn colours_of_amounts_go_over_the_range_that_pictures_share() {
+    let accel = built("builtin:teapot?triangles=1000", "bvh", None);
+    let weights = SahWeights::of(&registry::find("bvh").expect("registered").defaults());
+    let outline = Outline::of(accel.as_ref(), weights, (&Budget::new(1 << 30), &Cancel::new(), &Progress::new())).expect("fits");
+    let known = Known { outline: Some(Arc::new(outline)), ..Known::default() };
+    let geometry = accel.geometry();
+    let camera = Camera { eye: Vec3::new(0.3, 0.4, 1.0), target: Vec3::ZERO, up: Vec3::Y, projection: PERSPECTIVE };
+    let view = View::new(&camera.reframed(geometry.world_bounds(), 1.0), geometry.space(), 1.0);
+    let settings = OverlaySettings { color: BoxColor::Triangles, ..at_depth(4) };
+    let over = |range: Option<[f32; 2]>| {
+        let wanted = Wanted { range, numbered: true, ..Wanted::new(settings, view, [1000, 1000], 10_000) };
+        collect(accel.as_ref(), &known, &wanted, &Cancel::new()).expect("not cancelled")
+    };
+    let alone = over(None);
+    let [low, high] = alone.amounts.expect("triangles are known");
+    assert!(alone.range == Some([low, high]) && low < high, "{low} {high}");
+    let wide = [low, 4.0 * high];
+    let shared = over(Some(wide));
+    assert_eq!((shared.amounts, shared.range, shared.shown), (alone.amounts, Some(wide), alone.shown));
+    let has = |collected: &Collected, color: [u8; 4]| collected.overlay.boxes.iter().any(|b| b.color == color);
+    let fullest = |range| theme::amount_color(high, range).to_array();
+    assert!(has(&alone, fullest([low, high])) && has(&shared, fullest(wide)));
+    assert!(!has(&shared, fullest([low, high])), "the brightest is another's");
 }

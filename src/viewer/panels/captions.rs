@@ -7,8 +7,8 @@ use eframe::egui::{Align2, Color32, Pos2, Rect, Stroke, TextStyle, Ui, Vec2, pos
 use super::hiding;
 use crate::accel::cell::Layout;
 use crate::render::Range;
-use crate::render::colormap::{difference, viridis};
 use crate::viewer::format;
+use crate::viewer::legends::{Heat, heat};
 use crate::viewer::settings::{BoxColor, Workspace};
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
@@ -100,42 +100,6 @@ fn moment(state: &State) -> Option<String> {
     Some(format!("{}: {what} of {kept} spp{instead}", live.key.entry.short))
 }
 
-/// Colours from one end of a range, 0, to the other, 1.
-type Colors = fn(f32) -> [f32; 3];
-
-/// What colours of amounts stand for.
-pub struct Heat {
-    /// What they are amounts of.
-    pub name: String,
-    /// The colours.
-    pub colors: Colors,
-    /// What their ends stand for.
-    pub ends: [String; 2],
-    /// The same as amounts.
-    pub range: Range,
-}
-
-impl Heat {
-    /// Colours of a range.
-    pub fn new(name: String, range: Range, colors: Colors) -> Self {
-        Self { name, colors, ends: [range.min, range.max].map(|end| format::number(end.into())), range }
-    }
-}
-
-/// What the colours of the shown structure's picture stand for, if they are those of amounts.
-pub fn heat(state: &State) -> Option<Heat> {
-    if state.is_held() && state.errors.chosen.is_some_and(|chosen| chosen.difference) {
-        let range = state.on_screen()?.range;
-        return Some(Heat::new("Brightness less the reference's".to_owned(), range, |t| difference(2.0 * t - 1.0)));
-    }
-    let each = state.settings.heat_rays.each();
-    if state.shows_tiles() {
-        return Some(Heat::new(format!("Nanoseconds {each}, by tile"), state.on_screen()?.range, viridis));
-    }
-    let range = state.picture.as_ref().filter(|_| state.settings.mode.is_heat())?.range;
-    Some(Heat::new(format!("{} {each}", state.settings.mode.label()), range, viridis))
-}
-
 /// What is to be seen, in sentences.
 pub fn describe(state: &State) -> String {
     let mut sentences = vec![state.model.as_ref().map_or("Nothing is open".to_owned(), |model| model.scene.name.clone())];
@@ -156,7 +120,8 @@ pub fn describe(state: &State) -> String {
     sentences.extend(captions(state).into_iter().map(|caption| caption.text));
     sentences
         .extend(heat(state).map(|Heat { name, ends: [low, high], .. }| format!("Colours show {name}, from {low} to {high}")));
-    sentences.extend(state.clicked_amount().map(|amount| format!("{} at the clicked pixel", format::number(amount.into()))));
+    let clicked = state.clicked_amount().filter(|_| !state.is_comparing());
+    sentences.extend(clicked.map(|amount| format!("{} at the clicked pixel", format::number(amount.into()))));
     sentences.iter().map(|s| s.trim_end_matches(['.', '…'])).map(|s| format!("{s}.")).collect::<Vec<_>>().join(" ")
 }
 

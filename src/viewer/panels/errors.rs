@@ -46,6 +46,13 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
                 commands.push(Command::Mode(Mode::Path));
             }
         });
+    } else if state.is_comparing() {
+        ui.horizontal(|ui| {
+            empty(ui, "Errors are those of one picture, which has all threads to itself.");
+            if ui.button("One picture again").on_hover_text("Take the pictures beside away.").clicked() {
+                commands.push(Command::PutBeside(None));
+            }
+        });
     } else if state.errors.curves.is_empty() {
         empty(ui, "The first samples are on their way.");
     } else if state.errors.as_table {
@@ -107,7 +114,7 @@ fn reference(ui: &mut Ui, state: &State, commands: &mut Commands) {
         ui.add(ProgressBar::new(share).desired_width(48.0 * theme::GRID).text(text));
         return;
     }
-    let wanted = errors.wanted_reference().filter(|_| state.settings.mode == Mode::Path);
+    let wanted = errors.wanted_reference().filter(|_| state.has_curves());
     let possible = wanted.is_some() && !state.is_measuring() && !state.is_checking();
     let about = wanted.map(|(_, secs)| format!(", about {}", format::duration(secs))).unwrap_or_default();
     let button = ui.add_enabled(possible, eframe::egui::Button::new(format!("Make reference{about}")));

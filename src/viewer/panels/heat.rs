@@ -4,43 +4,51 @@ use eframe::egui::{
     Button, CursorIcon, DragValue, EventFilter, Id, Key, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::{Commands, as_table, captions, empty, fact, heading, running, saves};
+use super::{Commands, as_table, empty, fact, heading, running, saves};
+use crate::accel::registry::Entry;
 use crate::lab::tile_times::{REPEATS, TILE};
-use crate::render::{Amounts, Histogram, Mode, Picture, Range};
+use crate::render::{Histogram, Mode, Range};
 use crate::viewer::command::Command;
-use crate::viewer::format;
+use crate::viewer::compared::{self, Spread};
+use crate::viewer::panes::LETTERS;
 use crate::viewer::sheets::What;
 use crate::viewer::state::{LEAST_SPAN, State};
 use crate::viewer::theme::{self, Palette};
 use crate::viewer::tiles::TERMS;
+use crate::viewer::{format, legends};
 
 /// What an arrow key moves an end of the range, in bins, with Shift held and without.
 const KEY_STEPS: [f32; 2] = [8.0, 1.0];
 
 /// Whether there is anything to show.
 pub fn is_shown(state: &State) -> bool {
-    state.model.is_some() && (state.settings.mode.is_heat() || state.tiles.shown)
+    state.model.is_some() && (state.heat_kind().is_some() || state.tiles.shown)
 }
 
-/// A heat map that is on the screen.
-pub struct Shown<'a> {
-    /// Its picture.
-    pub picture: &'a Picture,
-    /// The amount of each pixel.
-    pub amounts: &'a Amounts,
+/// Whether it is chosen whose work is shown: beside a picture that shows none, heat maps are those of the camera's rays.
+pub fn has_rays(state: &State) -> bool {
+    is_shown(state) && (state.settings.mode.is_heat() || state.tiles.shown)
+}
+
+/// Heat maps that are on the screen and share a range.
+pub struct Shown {
+    /// What structures they are of.
+    pub of: Vec<&'static Entry>,
     /// What they are amounts of.
     pub name: String,
-    /// What the ends of the colours stand for.
-    pub range: Range,
+    /// How those are spread, and what the ends of the colours stand for.
+    pub spread: Spread,
 }
 
-/// The heat map on the screen, if there is one.
-pub fn on_screen(state: &State) -> Option<Shown<'_>> {
+/// The heat maps on the screen, if there are any.
+pub fn on_screen(state: &State) -> Option<Shown> {
     // Until tiles are timed the picture is another one.
     let other = !is_shown(state) || (state.tiles.shown && !state.shows_tiles());
-    let picture = state.on_screen().filter(|_| !other)?;
-    let (name, range) = (captions::heat(state)?.name, state.range.unwrap_or(picture.range));
-    Some(Shown { picture, amounts: picture.amounts.as_ref()?, name, range })
+    let spread = compared::spread(state).filter(|_| !other)?;
+    let name = legends::heat(state).map(|heat| heat.name).or_else(|| compared::amount(state))?;
+    let of =
+        compared::entries(state).zip(LETTERS).filter(|(_, letter)| spread.of.contains(letter)).map(|(entry, _)| entry).collect();
+    Some(Shown { of, name, spread: Spread { range: state.range.unwrap_or(spread.range), ..spread } })
 }
 
 /// Draws the section, if there is one.
@@ -55,21 +63,45 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if let Some(why) = state.why_no_stack().filter(|_| state.settings.mode == Mode::Stack && !state.tiles.shown) {
         empty(ui, why);
     }
-    if let Some(Shown { picture, amounts, range, .. }) = on_screen(state) {
-        ends(ui, range, &amounts.histogram, commands);
-        let as_table = ui.horizontal_wrapped(|ui| {
-            let chosen = as_table::choice(ui, "heat map");
-            saves::show(ui, What::Heat, state, commands);
-            chosen
-        });
-        if as_table.inner {
-            bins(ui, &amounts.histogram);
-        }
-        typed(ui, state, picture.range, amounts, commands);
-        let help = "The amount of the pixel that was last clicked. Under the pointer it is told beside the colours, where one picture is shown.";
-        fact(ui, "Clicked pixel", format::or_missing(state.clicked_amount(), |x| format::number(x.into())), help);
+    if let Some(shown) = on_screen(state) {
+        spread_of(ui, state, &shown.spread, commands);
+        clicked(ui, state);
     }
     ui.separator();
+}
+
+/// How amounts are spread, and the range of their colours.
+fn spread_of(ui: &mut Ui, state: &State, spread: &Spread, commands: &mut Commands) {
+    if let [others @ .., last] = &spread.of[..]
+        && !others.is_empty()
+    {
+        empty(ui, &format!("Pixels of {} and {last} together: they share the range.", others.join(", ")));
+    }
+    ends(ui, spread.range, &spread.histogram, commands);
+    let as_table = ui.horizontal_wrapped(|ui| {
+        let chosen = as_table::choice(ui, "heat map");
+        saves::show(ui, What::Heat, state, commands);
+        chosen
+    });
+    if as_table.inner {
+        bins(ui, &spread.histogram);
+    }
+    typed(ui, state, spread.range, spread.histogram.width, commands);
+}
+
+/// The amount of the pixel that was last clicked, of each picture.
+fn clicked(ui: &mut Ui, state: &State) {
+    let help = "The amount of the pixel that was last clicked. Under the pointer it is told over the picture.";
+    if !state.is_comparing() {
+        let amount = format::or_missing(state.clicked_amount(), |x| format::number(x.into()));
+        return fact(ui, "Clicked pixel", amount, help);
+    }
+    let told = compared::told_of_click(state);
+    if told.is_empty() {
+        return fact(ui, "Clicked pixel", format::or_missing(None::<f32>, |_| String::new()), help);
+    }
+    empty(ui, "Clicked pixel");
+    told.iter().for_each(|told| fact(ui, &told.of, told.written(), help));
 }
 
 /// The times of tiles: how to get them, and what they come to.
@@ -208,11 +240,9 @@ fn handle(ui: &Ui, id: Id, name: &str, scale: Scale, amount: f32, step: f32) -> 
 }
 
 /// The ends as numbers, and the range that fits.
-fn typed(ui: &mut Ui, state: &State, fitting: Range, amounts: &Amounts, commands: &mut Commands) {
-    let before = state.range.unwrap_or(fitting);
-    let Range { mut min, mut max } = before;
+fn typed(ui: &mut Ui, state: &State, Range { mut min, mut max }: Range, width: f32, commands: &mut Commands) {
     ui.horizontal_wrapped(|ui| {
-        let speed = f64::from(0.25 * amounts.histogram.width);
+        let speed = f64::from(0.25 * width);
         let mut field = |value: &mut f32, prefix: &str, name: &str, help: &str| {
             let field = DragValue::new(value).range(0.0..=f32::MAX).speed(speed).max_decimals(1).prefix(prefix);
             ui.add(field).accessible_name(name).on_hover_text(help).changed()

@@ -150,7 +150,12 @@ fn exports(ui: &mut Ui, state: &State, commands: &mut Commands) {
             free,
             Export::Report { quick: false },
         ),
-        ("Save figure…", "The view with its boxes and rays as lines (SVG).", state.picture.is_some(), Export::Figure),
+        (
+            "Save figure…",
+            "The view, or compared ones as they stand, with boxes and rays as lines (SVG).",
+            state.picture.is_some(),
+            Export::Figure,
+        ),
         (
             "Save picture…",
             "The traced picture alone, or compared ones as they stand (PNG).",

@@ -2,26 +2,27 @@
 
 use eframe::egui::{Align, Align2, Button, ComboBox, Label, Layout, Rect, RichText, ScrollArea, Ui, UiBuilder, Window, vec2};
 
-use super::captions::{self, Heat};
 use super::split::Place;
-use super::{Commands, empty, structure};
+use super::{Commands, captions, empty, structure};
 use crate::accel::registry;
-use crate::render::colormap::{difference, viridis};
-use crate::render::{HeatRays, Mode, Picture};
+use crate::render::Mode;
 use crate::viewer::command::Command;
-use crate::viewer::kept::Key;
+use crate::viewer::compared::{Told, facts, heats, names, told_at, told_of_click};
+use crate::viewer::legends;
+use crate::viewer::marks;
 use crate::viewer::panes::{Arrange, LETTERS, PaneChoice, Shows};
 use crate::viewer::state::State;
 use crate::viewer::theme;
-use crate::viewer::{format, marks};
+use glam::Vec2;
 
 /// Strips narrower than this have no name.
 const NAMED: f32 = 24.0 * theme::GRID;
 /// The least width of a list above a picture.
 const LIST: f32 = 16.0 * theme::GRID;
 
-/// Draws what stands around pictures and over them; nothing where there is only one.
-pub fn show(ui: &mut Ui, places: &[Place], state: &State, commands: &mut Commands) {
+/// Draws what stands around pictures and over them; nothing where there is only one. `pointer` is the view that it is over, and
+/// where in it, as [`told_at`] takes it.
+pub fn show(ui: &mut Ui, places: &[Place], pointer: Option<(Rect, Vec2)>, state: &State, commands: &mut Commands) {
     if !state.is_comparing() {
         return;
     }
@@ -46,6 +47,7 @@ pub fn show(ui: &mut Ui, places: &[Place], state: &State, commands: &mut Command
         plates(ui, places, state);
     }
     legends(ui, places, state);
+    amounts(ui, places, pointer, state);
     tune(ui, places, state, commands);
 }
 
@@ -121,7 +123,7 @@ fn chosen_picture(ui: &mut Ui, (which, letter): (usize, &str), choice: &PaneChoi
     // Without amounts there is no difference of them.
     let plain = choice.shows == Shows::Difference && !state.settings.mode.is_heat();
     let combo = combo.selected_text(text(if plain { Shows::Same } else { choice.shows })).show_ui(ui, |ui| {
-        let offered = |mode: &Mode| *mode != Mode::Path && (*mode != Mode::Stack || has_stack(state, choice));
+        let offered = |mode: &Mode| *mode != Mode::Stack || has_stack(state, choice);
         let modes = Mode::ALL.into_iter().filter(offered).map(Shows::Mode);
         let differs = state.settings.mode.is_heat().then_some(Shows::Difference);
         for shows in std::iter::once(Shows::Same).chain(differs).chain(modes) {
@@ -170,60 +172,6 @@ fn tune(ui: &Ui, places: &[Place], state: &State, commands: &mut Commands) {
     }
 }
 
-/// What pictures are of, A first: the structure, and what tells it from the same structure in another place.
-pub fn names(state: &State) -> Vec<String> {
-    let first = state.shown.as_ref().map_or_else(|| state.wanted_key(), |shown| shown.key.clone());
-    let others = state.settings.panes.on_screen().iter().map(PaneChoice::key);
-    let keys: Vec<Key> = std::iter::once(first).chain(others).collect();
-    keys.iter().map(|key| name(key, &keys)).collect()
-}
-
-fn name(key: &Key, all: &[Key]) -> String {
-    let mut name = key.entry.name.to_owned();
-    if all.iter().any(|other| other.entry.id == key.entry.id && other != key) {
-        for (param, value) in key.params.changed() {
-            name.push_str(&format!(" {}={value}", param.id));
-        }
-        if all.iter().any(|other| other.entry.id == key.entry.id && other.test != key.test) {
-            name.push_str(&format!(" {}", key.test.id()));
-        }
-    }
-    name
-}
-
-/// The figures beneath a picture.
-fn facts(state: &State, which: usize, names: &[String]) -> String {
-    let name = &names[which];
-    let (built, picture) = match which.checked_sub(1) {
-        None => (state.shown.as_ref(), state.picture.as_deref()),
-        Some(other) => {
-            let Some(pane) = state.panes.all.get(other) else { return format!("{name}: waits") };
-            if let Some(building) = &pane.building {
-                let share = building.job.progress.snapshot().fraction.map(|share| format!(" {}", format::percent(share.into())));
-                return format!("{name}: building{}", share.unwrap_or_default());
-            }
-            (pane.built.as_ref(), pane.picture.as_deref())
-        }
-    };
-    let Some(built) = built else { return format!("{name}: waits to be built") };
-    let mut parts: Vec<String> = picture.map(work).into_iter().flatten().collect();
-    parts.push(format!("built in {}", format::duration(built.build_secs)));
-    parts.push(format::bytes(built.bytes()));
-    format!("{name}: {}", parts.join(", "))
-}
-
-/// What rays did in a structure, and how many there were.
-fn work(picture: &Picture) -> Vec<String> {
-    let progress = &picture.progress;
-    let over = |n: u64| format::number(n as f64 / progress.counted as f64);
-    let counted = (progress.counted > 0).then(|| {
-        let counts = &progress.counts;
-        format!("{} nodes, {} tests a ray", over(counts.nodes), over(counts.prims))
-    });
-    let samples = if progress.step > 1 { format!("1/{} resolution", progress.step) } else { format!("{} spp", progress.samples) };
-    counted.into_iter().chain([samples]).collect()
-}
-
 /// The names of strips, on them.
 fn plates(ui: &Ui, places: &[Place], state: &State) {
     let first = state.shown.as_ref().map_or_else(|| state.settings.entry(), |shown| shown.key.entry);
@@ -234,46 +182,6 @@ fn plates(ui: &Ui, places: &[Place], state: &State) {
             captions::plate(ui, inner.left_top(), Align2::LEFT_TOP, format!("{letter}: {}", entry.short));
         }
     }
-}
-
-/// What the colours of pictures stand for, each kind once, with the last picture that shows it.
-fn heats(state: &State) -> Vec<(usize, Heat)> {
-    let (first, mut all) = (state.settings.mode, Vec::<(usize, Mode, Heat)>::new());
-    let each = each(state);
-    let mut differences = Vec::new();
-    let mut add = |which: usize, mode: Mode, picture: &Picture| {
-        all.retain(|(_, known, _)| *known != mode);
-        all.push((which, mode, Heat::new(format!("{} {each}", mode.label()), picture.range, viridis)));
-    };
-    if let Some(picture) = state.picture.as_ref().filter(|_| first.is_heat()) {
-        add(0, first, picture);
-    }
-    for (i, (pane, choice)) in state.panes.all.iter().zip(state.settings.panes.on_screen()).enumerate() {
-        let (mode, differs) = (choice.mode(first), choice.differs(first));
-        match pane.on_screen(differs) {
-            Some(picture) if differs => differences.push((i + 1, less(state, i, picture))),
-            Some(picture) if mode.is_heat() => add(i + 1, mode, picture),
-            Some(_) | None => {}
-        }
-    }
-    all.into_iter().map(|(which, _, heat)| (which, heat)).chain(differences).collect()
-}
-
-/// Of what amounts are told: only where A is a heat map itself its rays may be others than the camera's.
-fn each(state: &State) -> &'static str {
-    if state.settings.mode.is_heat() { state.settings.heat_rays.each() } else { HeatRays::default().each() }
-}
-
-/// What the colours of a difference stand for.
-fn less(state: &State, which: usize, picture: &Picture) -> Heat {
-    let first = state.shown.as_ref().map_or_else(|| state.settings.entry(), |shown| shown.key.entry);
-    let (a, b) = (first.short, state.settings.panes.others[which].entry().short);
-    let letter = LETTERS[which + 1];
-    let [a, b] = if a == b { [LETTERS[0], letter] } else { [a, b] };
-    let size = format::number(picture.range.max.into());
-    let name = format!("{} {}, A less {letter}", state.settings.mode.label(), each(state));
-    let colors = |t: f32| difference(2.0 * t - 1.0);
-    Heat { ends: [format!("{size} more in {b}"), format!("{size} more in {a}")], ..Heat::new(name, picture.range, colors) }
 }
 
 fn legends(ui: &Ui, places: &[Place], state: &State) {
@@ -294,6 +202,24 @@ fn legends(ui: &Ui, places: &[Place], state: &State) {
     }
 }
 
+/// What pictures show under the pointer, or where one was clicked.
+fn amounts(ui: &Ui, places: &[Place], pointer: Option<(Rect, Vec2)>, state: &State) {
+    let Some(first) = places.first() else { return };
+    let (view, what, told) = match pointer {
+        Some((view, at)) => (view, "Here", told_at(state, at)),
+        None => (first.view, "Clicked", told_of_click(state)),
+    };
+    if told.is_empty() || (pointer.is_none() && told.iter().all(|told| told.amount.is_none())) {
+        return;
+    }
+    let lines = told.iter().map(|told| format!("{}: {}", told.of, told.written()));
+    let text: Vec<String> = std::iter::once(what.to_owned()).chain(lines).collect();
+    // Beneath the names of strips.
+    let down = if state.settings.panes.arrange == Arrange::Divider { theme::ROW + theme::GRID } else { 0.0 };
+    let corner = view.shrink(theme::GUTTER).right_top() + vec2(0.0, down);
+    captions::plate(ui, corner, Align2::RIGHT_TOP, text.join("\n"));
+}
+
 /// What is compared, for those who cannot see it.
 pub fn describe(state: &State) -> Vec<String> {
     if !state.is_comparing() {
@@ -303,10 +229,12 @@ pub fn describe(state: &State) -> Vec<String> {
     let arranged = format!("Compared in: {}", state.settings.panes.arrange.label());
     let pictures = (0..names.len()).map(|which| format!("{}, {}", LETTERS[which], facts(state, which, &names)));
     let others =
-        heats(state).into_iter().filter(|(which, heat)| *which > 0 && captions::heat(state).is_none_or(|a| a.name != heat.name));
+        heats(state).into_iter().filter(|(which, heat)| *which > 0 && legends::heat(state).is_none_or(|a| a.name != heat.name));
     let colors = others.map(|(which, heat)| {
         let [low, high] = heat.ends;
         format!("Colours of {} show {}, from {low} to {high}", LETTERS[which], heat.name)
     });
-    std::iter::once(arranged).chain(pictures).chain(colors).collect()
+    let clicked = told_of_click(state).into_iter().filter(|told| told.amount.is_some());
+    let clicked = clicked.map(|told: Told| format!("{}: {} at the clicked pixel", told.of, told.written()));
+    std::iter::once(arranged).chain(pictures).chain(colors).chain(clicked).collect()
 }

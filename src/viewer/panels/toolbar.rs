@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     ui.spacing_mut().slider_width = theme::SHORT_SLIDER;
     let look = |ui: &mut Ui, commands: &mut Commands| {
         mode(ui, state, commands);
-        if heat::is_shown(state) {
+        if heat::has_rays(state) {
             heat_rays(ui, state, commands);
         }
         if state.settings.mode == Mode::Path && !state.tiles.shown {
@@ -38,7 +38,13 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     }
     if state.offers_panes() {
         ui.add_space(theme::GRID);
-        ui.horizontal(|ui| compared(ui, state, commands));
+        ui.horizontal(|ui| {
+            compared(ui, state, commands);
+            // Where the first picture is path traced they stand beside what it shows.
+            if state.settings.mode != Mode::Path && state.follows_light() {
+                light(ui, state, commands);
+            }
+        });
     }
 }
 
@@ -98,7 +104,7 @@ fn light(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let mut tone = state.settings.tone;
     let stops = DragValue::new(&mut tone.exposure).range(STOPS).speed(0.05).fixed_decimals(1).suffix(" EV");
     ui.add(stops).on_hover_text("Exposure in stops: each doubles the light. Drag, or click to type.");
-    let fitting = state.picture.as_ref().and_then(|picture| picture.progress.exposure);
+    let fitting = state.fitting_exposure();
     let auto = ui.add_enabled(fitting.is_some(), Button::new("Auto"));
     if auto.on_hover_text("Expose what is seen to a middle grey.").clicked() {
         tone.exposure = fitting.map_or(tone.exposure, |stops| (stops * 10.0).round() / 10.0).clamp(*STOPS.start(), *STOPS.end());

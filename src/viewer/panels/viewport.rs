@@ -36,6 +36,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
     let pixels_per_point = ui.ctx().pixels_per_point();
     let compared = Some(&state.settings.panes).filter(|_| state.is_comparing());
     let places = split::places(rect, compared, pixels_per_point);
+    // All views are seen by one camera: what is under the pointer in one of them is so in each.
+    let under = |at: Pos2| places.iter().find(|place| place.seen.contains(at)).map(|place| place.view);
     let view = places[0].view;
     let size_px = gpu::size_px(view, pixels_per_point);
     paint(ui, rect, &places, state, (size_px, pixels_per_point));
@@ -50,10 +52,9 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) -> [u32; 2] {
         over.shrink_clip_rect(view); // they belong to one of several views
         captions::show(&over, view, None, state);
         split::dividers(ui, &places, state, commands);
-        panes::show(ui, &places, state, commands);
+        let pointer = response.hover_pos().and_then(|at| under(at).map(|view| (view, in_picture(view, at))));
+        panes::show(ui, &places, pointer, state, commands);
     }
-    // All views are seen by one camera: what is under the pointer in one of them is so in each.
-    let under = |at: Pos2| places.iter().find(|place| place.seen.contains(at)).map(|place| place.view);
     if matches!(state.settings.workspace, Workspace::View | Workspace::Ray) {
         marking::show(ui, view, &state.brute);
     }

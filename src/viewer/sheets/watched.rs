@@ -3,14 +3,14 @@
 use crate::lab::film::Film;
 use crate::lab::{Field, Sheet};
 use crate::render::{Histogram, Range};
-use crate::viewer::panels::heat;
+use crate::viewer::panels::heat::{self, Shown};
 use crate::viewer::state::State;
 
 /// How the amounts of the heat map on the screen are spread.
 pub fn heat(state: &State) -> Option<Sheet> {
-    let shown = heat::on_screen(state)?;
-    let structure = state.shown.as_ref().map_or("", |shown| shown.key.entry.id);
-    Some(bins(structure, &shown.name, (&shown.amounts.histogram, shown.range)))
+    let Shown { of, name, spread } = heat::on_screen(state)?;
+    let structures = of.iter().map(|entry| entry.id).collect::<Vec<_>>().join(", ");
+    Some(bins(&structures, &name, (&spread.histogram, spread.range)))
 }
 
 /// The ends of the colours, and a row a bin.

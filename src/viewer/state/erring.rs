@@ -12,7 +12,7 @@ impl State {
     /// The picture that is on the screen: the present one, that of tiles' times, or in the Compare workspace that of a point of
     /// a curve.
     pub fn on_screen(&self) -> Option<&Arc<Picture>> {
-        let shows = self.settings.workspace.shows_errors() && self.settings.mode == Mode::Path && !self.tiles.shown;
+        let shows = self.has_curves() && !self.tiles.shown;
         let tiles = self.tiles.picture.as_ref().filter(|_| self.shows_tiles()).map(|(_, _, picture)| picture);
         self.errors.picture.as_ref().filter(|_| shows).or(tiles).or(self.picture.as_ref())
     }
@@ -22,9 +22,10 @@ impl State {
         self.on_screen().zip(self.errors.picture.as_ref()).is_some_and(|(shown, held)| Arc::ptr_eq(shown, held))
     }
 
-    /// Whether light is kept on its way, for the curves of errors: only where somebody looks at them.
-    pub(super) fn keeps_light(&self) -> bool {
-        self.settings.workspace.shows_errors() && self.settings.mode == Mode::Path
+    /// Whether there are curves of errors: light is kept on its way for them only where somebody looks at them. Seconds are those
+    /// of a picture that has all threads to itself, so there are none of compared ones.
+    pub fn has_curves(&self) -> bool {
+        self.settings.workspace.shows_errors() && self.settings.mode == Mode::Path && !self.is_comparing()
     }
 
     /// Curves are those of one view: forgets them with it.
@@ -102,7 +103,7 @@ impl State {
 
     /// Starts a reference of the present view; the picture rests meanwhile.
     pub(super) fn make_reference(&mut self) {
-        let Some((spp, _)) = self.errors.wanted_reference() else { return };
+        let Some((spp, _)) = self.errors.wanted_reference().filter(|_| self.has_curves()) else { return };
         let Some((whole, pause)) = self.begin_on_view(Mode::Path) else { return };
         // What the picture shows, since it is what is compared.
         let view = render::Job { section: self.section(), visible: self.visible().cloned(), ..whole };

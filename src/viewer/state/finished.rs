@@ -6,7 +6,6 @@ use std::time::Instant;
 use super::{Again, Causes, Fits, State};
 use crate::accel::BuildError;
 use crate::job::Outcome;
-use crate::render::Mode;
 use crate::scene::texture::Detail;
 use crate::scene::{CameraSpec, Material};
 use crate::viewer::brute::Brute;
@@ -186,7 +185,7 @@ impl State {
     fn wanted_detail(&self) -> Detail {
         let mapped = |material: &Material| material.has_surface_maps() || material.emission_texture.is_some();
         let has_some = |model: &Model| model.scene.materials.iter().any(mapped);
-        let light = self.settings.mode == Mode::Path && self.model.as_ref().is_some_and(has_some);
+        let light = self.follows_light() && self.model.as_ref().is_some_and(has_some);
         if light { Detail::Light } else { Detail::Colors }
     }
 

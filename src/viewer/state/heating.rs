@@ -3,6 +3,7 @@
 use super::State;
 use crate::accel::registry::Family;
 use crate::render::{HeatRays, Mode, Range};
+use crate::scene::Camera;
 use glam::Vec2;
 
 /// The least that the ends of a range are apart.
@@ -36,6 +37,11 @@ impl State {
             // Amounts that differ by less have one colour in any case.
             Range { min, max: range.max.max(min + LEAST_SPAN).max(min.next_up()) }
         });
+    }
+
+    /// Where the picture was last clicked, and from where it was seen.
+    pub const fn clicked(&self) -> Option<(Camera, Vec2)> {
+        self.clicked
     }
 
     /// The amount where the picture was clicked, while it is of that view.

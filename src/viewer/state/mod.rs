@@ -20,6 +20,7 @@ mod heating;
 mod hiding;
 mod keeping;
 mod listing;
+mod pane_boxes;
 mod panes;
 mod ranges;
 mod refresh;

@@ -2,20 +2,20 @@
 
 use std::sync::Arc;
 
+use super::pane_boxes::Boxes;
 use super::ranges::Fit;
 use super::{Asked, State};
 use crate::accel::BuildError;
 use crate::accel::registry;
 use crate::job::{Job, Outcome};
 use crate::render::{Mode, Picture, Renderer};
-use crate::task::Cancelled;
+use crate::task::{Cancel, Cancelled, Progress};
 use crate::viewer::gpu::Overlay;
 use crate::viewer::kept::{Built, Key};
-use crate::viewer::overlay::{Collected, Known, Wanted};
 use crate::viewer::panes::{PaneChoice, Pauses, Shows};
-use crate::viewer::settings::{BoxColor, OverlaySettings, Workspace};
+use crate::viewer::settings::Workspace;
 use crate::viewer::shown;
-use crate::viewer::workers::{self, Building, Collecting};
+use crate::viewer::workers::{self, Building};
 
 /// All that stand beside the shown one.
 #[derive(Default)]
@@ -46,8 +46,7 @@ pub struct Pane {
     pub(super) requested: Option<Asked>,
     differing: Option<(Compared, Job<Result<Picture, Cancelled>>)>,
     differs_for: Option<Compared>,
-    collecting: Option<(Wanted, Collecting)>,
-    collected_for: Option<Wanted>,
+    pub(super) boxes: Boxes,
 }
 
 /// Which pictures a difference is of.
@@ -111,6 +110,15 @@ impl State {
         }
     }
 
+    /// Changes which pictures stand beside: a range that the user has set is one of the amounts that it was set for.
+    pub(super) fn change_panes(&mut self, change: impl FnOnce(&mut Self)) {
+        let kind = self.heat_kind();
+        change(self);
+        if kind != self.heat_kind() {
+            self.range = None;
+        }
+    }
+
     /// Takes a pane away; the others stay as they are.
     pub(super) fn close_pane(&mut self, which: usize) {
         self.settings.panes.close(which);
@@ -121,19 +129,32 @@ impl State {
         }
     }
 
-    /// Whether pictures stand beside the first. Where errors are measured against seconds nothing else is traced.
+    /// Whether pictures stand beside the first.
     pub fn is_comparing(&self) -> bool {
         self.offers_panes() && !self.settings.panes.on_screen().is_empty()
     }
 
     /// Whether pictures can stand beside the first.
     pub fn offers_panes(&self) -> bool {
-        self.settings.workspace == Workspace::Compare && self.settings.mode != Mode::Path && !self.tiles.shown
+        self.settings.workspace == Workspace::Compare && !self.tiles.shown
     }
 
     /// Whether all of those are there.
     pub fn is_split(&self) -> bool {
         self.is_comparing() && self.panes.all.iter().all(|pane| pane.picture.is_some()) && !self.panes.all.is_empty()
+    }
+
+    /// Whether a picture on the screen is path traced: then it matters how light becomes colour, and what samples are made of.
+    pub fn follows_light(&self) -> bool {
+        let first = self.settings.mode;
+        let beside = || self.settings.panes.on_screen().iter().any(|choice| choice.mode(first) == Mode::Path);
+        (first == Mode::Path && !self.tiles.shown) || (self.is_comparing() && beside())
+    }
+
+    /// The exposure that suits the first path traced picture on the screen.
+    pub fn fitting_exposure(&self) -> Option<f32> {
+        let beside = self.panes.all.iter().filter_map(|pane| pane.picture.as_ref());
+        self.picture.iter().chain(beside).find_map(|picture| picture.progress.exposure)
     }
 
     /// The pane that is being built.
@@ -149,7 +170,10 @@ impl State {
 
     /// Ends what would disturb a measurement, and keeps all renderers from running.
     pub(super) fn begin_measuring(&mut self) -> Pauses {
-        self.panes.all.iter_mut().for_each(|pane| pane.building = None);
+        self.panes.all.iter_mut().for_each(|pane| {
+            pane.building = None;
+            pane.boxes.stop();
+        });
         (self.rays.following, self.rays.playing, self.filming.playing) = (None, None, None);
         if self.brute.running.is_some() {
             self.brute.clear();
@@ -187,7 +211,7 @@ impl State {
             if self.advance_pane_build(&mut pane, &choice.key()) {
                 self.advance_pane_picture(&mut pane, &choice);
                 self.advance_difference(&mut pane, &choice);
-                self.advance_pane_overlay(&mut pane);
+                self.advance_pane_boxes(&mut pane);
             } else {
                 failed.push(which);
             }
@@ -282,7 +306,9 @@ impl State {
         if pane.differing.is_some() || pane.differs_for == Some(of) {
             return;
         }
-        let job = Job::spawn("difference", self.shared.waker(), move |cancel, _| shown::amounts_less(&first, &second, cancel));
+        let pool = self.shared.pool.clone();
+        let work = move |cancel: &Cancel, _: &Progress| pool.run(|| shown::amounts_less(&first, &second, cancel));
+        let job = Job::spawn("difference", self.shared.waker(), work);
         pane.differing = job.ok().map(|job| (of, job));
     }
 
@@ -295,41 +321,6 @@ impl State {
         Some((of, Arc::clone(first), Arc::clone(second)))
     }
 
-    /// The boxes of the pane's own structure that the present view is to show.
-    fn wanted_boxes(&self) -> Option<Wanted> {
-        // Amounts of its cells are not known: they stand in the list of the shown structure's.
-        let settings = OverlaySettings { color: BoxColor::Depth, ..self.settings.overlay };
-        // Which of its cells would be below the selected one nobody can say.
-        let drawn = (settings.boxes || settings.planes) && !settings.subtree_only;
-        let view = self.view()?;
-        let limit = self.graphics.comfortable_boxes() / (self.panes.all.len() + 1);
-        drawn.then_some(Wanted::new(settings, view, self.size_px, limit))
-    }
-
-    fn advance_pane_overlay(&mut self, pane: &mut Pane) {
-        if let Some((wanted, job)) = pane.collecting.take() {
-            match job.poll() {
-                Outcome::Running => pane.collecting = Some((wanted, job)),
-                Outcome::Done(Ok(Collected { overlay, .. })) => {
-                    self.generation += 1;
-                    pane.overlay = Some(Arc::new(Overlay { generation: self.generation, ..overlay }));
-                    pane.collected_for = Some(wanted);
-                }
-                Outcome::Done(Err(_)) | Outcome::Died => pane.collected_for = Some(wanted),
-            }
-        }
-        let wanted = self.wanted_boxes();
-        if wanted.is_none() {
-            (pane.overlay, pane.collecting, pane.collected_for) = (None, None, None);
-        }
-        let (Some(wanted), Some(built)) = (wanted, &pane.built) else { return };
-        let idle = pane.collecting.is_none() && !self.is_measuring();
-        if idle && pane.picture.is_some() && pane.collected_for.as_ref() != Some(&wanted) {
-            let job = workers::collect(&self.shared, Arc::clone(&built.accel), Known::default(), wanted.clone());
-            pane.collecting = job.ok().map(|job| (wanted, job));
-        }
-    }
-
     /// Whether anything runs that will change what is shown beside A.
     pub(super) fn panes_are_busy(&self) -> bool {
         if !self.is_comparing() || self.shown.is_none() {
@@ -339,13 +330,12 @@ impl State {
         let fitted = self.shared_modes().iter().all(current);
         let range = self.range_of(self.settings.mode);
         let mapped = self.requested.as_ref().is_some_and(|asked| asked.range == range);
-        let boxes = self.wanted_boxes();
         let at_rest = |(pane, choice): (&Pane, &PaneChoice)| {
             let asked = pane.requested.is_some() && pane.requested == self.wanted_of(pane, choice);
             let drawn = pane.whole().is_some_and(|picture| picture.progress.done);
             let compared = !choice.differs(self.settings.mode)
                 || (pane.differing.is_none() && self.to_compare(pane).is_some_and(|(of, ..)| pane.differs_for == Some(of)));
-            asked && drawn && compared && pane.collected_for == boxes
+            asked && drawn && compared && !self.boxes_are_busy(pane)
         };
         let choices = self.settings.panes.on_screen();
         let all = self.panes.all.len() == choices.len() && self.panes.all.iter().zip(choices).all(at_rest);

@@ -21,9 +21,16 @@ impl Fit {
 }
 
 impl State {
-    /// The range that amounts of a kind are to be mapped with: the user's for those of A, or the one that pictures share.
+    /// The amounts whose range the user sets, and whose spread is told: those of A, or of the first picture beside that shows some.
+    pub fn heat_kind(&self) -> Option<Mode> {
+        let first = self.settings.mode;
+        let beside = || self.settings.panes.on_screen().iter().map(|choice| choice.mode(first)).find(|mode| mode.is_heat());
+        if first.is_heat() { Some(first) } else { self.is_comparing().then(beside).flatten() }
+    }
+
+    /// The range that amounts of a kind are to be mapped with: the user's, or the one that pictures share.
     pub fn range_of(&self, mode: Mode) -> Option<Range> {
-        let fixed = self.range.filter(|_| mode == self.settings.mode);
+        let fixed = self.range.filter(|_| mode == self.heat_kind().unwrap_or(self.settings.mode));
         fixed.or_else(|| self.panes.fits.iter().find(|fit| fit.mode == mode).map(|fit| fit.range))
     }
 

@@ -45,7 +45,7 @@ impl State {
             textured: self.textures,
             sampler: self.settings.sampler,
             tone: self.settings.tone,
-            keeps: self.keeps_light(),
+            keeps: self.has_curves(),
         };
         if self.requested.as_ref() != Some(&asked) && !self.size_px.contains(&0) {
             let keep = asked.keeps.then(|| self.shared.budget.clone());
@@ -106,6 +106,9 @@ impl State {
                     self.overlay = Some(Arc::new(overlay));
                     self.collected = collected;
                     self.collected_for = Some((wanted, key));
+                    if self.is_comparing() {
+                        (self.shared.wake)(); // colours of those beside may go over another range now
+                    }
                 }
                 Outcome::Done(Err(_)) | Outcome::Died => self.collected_for = Some((wanted, key)),
             }
@@ -129,6 +132,7 @@ impl State {
             numbered: needs_rows && outline.is_some(),
             counted: visits.as_ref().map(|(number, _)| *number),
             film_at: film.as_ref().map(|film| film.1),
+            range: self.range_of_boxes(None),
         };
         let current = self.collected_for.as_ref().is_some_and(|(w, k)| *w == wanted && *k == shown.key);
         self.overlay_is_current = current;

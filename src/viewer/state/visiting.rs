@@ -11,11 +11,12 @@ use crate::scene::Camera;
 use crate::task::Cancelled;
 use crate::viewer::kept::Key;
 use crate::viewer::settings::BoxColor;
+use crate::viewer::workers::Shared;
 
 /// What visits are of: the structure, from where it is seen, what of it, and the size of the view in pixels.
-type Of = (Key, Camera, Option<HalfSpace>, [u32; 2]);
+pub(super) type Of = (Key, Camera, Option<HalfSpace>, [u32; 2]);
 
-/// Visits of the shown structure.
+/// Visits of a structure.
 #[derive(Default)]
 pub struct Visiting {
     /// What was counted.
@@ -36,22 +37,61 @@ impl Visiting {
     pub fn stop(&mut self) {
         self.running = None;
     }
+
+    /// Whether they were not counted of that.
+    pub(super) fn lacks(&self, of: &Of) -> bool {
+        self.found.as_ref().is_none_or(|(found, _)| found != of)
+    }
+
+    /// Takes in what was counted; stops what is of something else than is wanted. False if counting failed.
+    pub(super) fn take_in(&mut self, wanted: Option<&Of>, shared: &Shared) -> bool {
+        let Some((of, job)) = self.running.take() else { return true };
+        match job.poll() {
+            Outcome::Running if wanted == Some(&of) => self.running = Some((of, job)),
+            Outcome::Running | Outcome::Done(Err(_)) => {}
+            Outcome::Done(Ok(visits)) => {
+                self.number += 1;
+                shared.give_back(self.found.replace((of, Arc::new(visits))));
+            }
+            Outcome::Died => return false,
+        }
+        true
+    }
+
+    /// Counts anew, unless something is being counted.
+    pub(super) fn count(&mut self, of: Of, view: render::Job, shared: &Shared) {
+        if self.running.is_some() {
+            return;
+        }
+        let (pool, size_px) = (shared.pool.clone(), of.3);
+        let job = Job::spawn("visits", shared.waker(), move |cancel, progress| {
+            Visits::of_view(&view, size_px, &pool, cancel, progress)
+        });
+        self.running = job.ok().map(|job| (of, job));
+    }
 }
 
 impl State {
     /// Whether boxes are coloured by visits.
-    fn wants_visits(&self) -> bool {
+    pub(super) fn wants_visits(&self) -> bool {
         let overlay = &self.settings.overlay;
         overlay.color == BoxColor::Visits && (overlay.boxes || overlay.planes) && self.shown.is_some()
     }
 
-    fn visited_view(&self) -> Option<Of> {
-        Some((self.shown.as_ref()?.key.clone(), self.camera, self.section(), self.size_px))
+    /// What visits of a structure would be counted of now.
+    pub(super) fn visited_view(&self, key: &Key) -> Of {
+        (key.clone(), self.camera, self.section(), self.size_px)
+    }
+
+    /// What those of the shown structure are yet to be counted of.
+    fn awaited_visits(&self) -> Option<Of> {
+        let shown = self.shown.as_ref().filter(|_| self.wants_visits())?;
+        Some(self.visited_view(&shown.key)).filter(|of| self.visiting.lacks(of))
     }
 
     /// Whether they are wanted of the present view and not there.
     pub(super) fn awaits_visits(&self) -> bool {
-        self.wants_visits() && self.visiting.found.as_ref().map(|(of, _)| of) != self.visited_view().as_ref()
+        self.awaited_visits().is_some()
     }
 
     /// What a cell of the shown structure is visited by a ray of the view that was counted.
@@ -61,34 +101,21 @@ impl State {
 
     /// Takes in what was counted, and counts anew once the view has changed and is on the screen.
     pub(super) fn advance_visits(&mut self) {
-        if let Some((of, job)) = self.visiting.running.take() {
-            match job.poll() {
-                // Of another view nobody waits for it.
-                Outcome::Running if self.awaits_visits() && self.visited_view().as_ref() == Some(&of) => {
-                    self.visiting.running = Some((of, job));
-                    return;
-                }
-                Outcome::Running | Outcome::Done(Err(_)) => {}
-                Outcome::Done(Ok(visits)) => {
-                    self.visiting.number += 1;
-                    self.shared.give_back(self.visiting.found.replace((of, Arc::new(visits))));
-                }
-                Outcome::Died => {
-                    self.settings.overlay.color = BoxColor::Depth;
-                    self.fail("Can't count visits: following rays failed. Please report this.".to_owned());
-                }
-            }
+        let wanted = self.awaited_visits();
+        if !self.visiting.take_in(wanted.as_ref(), &self.shared) {
+            return self.fail_visits();
         }
         let there = self.whole_picture().is_some() && !self.size_px.contains(&0);
-        if !self.awaits_visits() || !there || self.is_measuring() {
-            return;
+        let (Some(of), Some(whole)) = (self.awaited_visits(), self.traced_view(Mode::Shaded)) else { return };
+        if there && !self.is_measuring() {
+            let view = render::Job { section: self.section(), ..whole };
+            self.visiting.count(of, view, &self.shared);
         }
-        let (Some(of), Some(whole)) = (self.visited_view(), self.traced_view(Mode::Shaded)) else { return };
-        let view = render::Job { section: self.section(), ..whole };
-        let (pool, size_px) = (self.shared.pool.clone(), self.size_px);
-        let job = Job::spawn("visits", self.shared.waker(), move |cancel, progress| {
-            Visits::of_view(&view, size_px, &pool, cancel, progress)
-        });
-        self.visiting.running = job.ok().map(|job| (of, job));
+    }
+
+    /// Says that visits cannot be counted, and colours boxes by depth.
+    pub(super) fn fail_visits(&mut self) {
+        self.settings.overlay.color = BoxColor::Depth;
+        self.fail("Can't count visits: following rays failed. Please report this.".to_owned());
     }
 }
