@@ -10,6 +10,7 @@ mod window;
 mod accessibility;
 mod budgets;
 mod checking;
+mod compared;
 mod comparing;
 mod errors;
 mod exploring;
