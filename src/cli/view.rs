@@ -33,6 +33,9 @@ pub struct Args {
     /// Cut the model open for the camera: x,0.5 leaves what is below the middle along x, -x,0.5 what is above.
     #[arg(long, value_name = "AXIS,PLACE", allow_hyphen_values = true)]
     pub section: Option<Section>,
+    /// Draw boxes only from this part of the view's width on, in per cent from the left.
+    #[arg(long, value_name = "PER CENT", value_parser = clap::value_parser!(u32).range(0..100))]
+    pub boxes_from: Option<u32>,
     /// The depth of the boxes.
     #[arg(long, value_name = "N")]
     pub depth: Option<u32>,
@@ -146,6 +149,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         camera: args.look.camera,
         section: args.section,
         depth: args.depth,
+        boxes_from: args.boxes_from,
         leaves_only: args.leaves_only,
         color_boxes: args.color_boxes.and_then(|what| BoxColor::of_id(&what)),
         no_overlay: args.no_overlay,

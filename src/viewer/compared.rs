@@ -190,8 +190,6 @@ pub fn told_of_click(state: &State) -> Vec<Told> {
 }
 
 fn told(state: &State, amount: impl Fn(&Picture) -> Option<f32>) -> Vec<Told> {
-    let (shown, first) = (shown(state), state.shown.as_ref().map_or_else(|| state.settings.entry(), |shown| shown.key.entry));
-    let structures = std::iter::once(first).chain(state.settings.panes.on_screen().iter().map(PaneChoice::entry));
     let told = |((shown, entry), letter): ((&Shown<'_>, &Entry), &str)| {
         let picture = shown.picture.filter(|picture| picture.amounts.is_some())?;
         let of = match state.heat_kind() {
@@ -201,5 +199,5 @@ fn told(state: &State, amount: impl Fn(&Picture) -> Option<f32>) -> Vec<Told> {
         };
         Some(Told { of, amount: amount(picture), differs: shown.differs })
     };
-    shown.iter().zip(structures).zip(LETTERS).filter_map(told).collect()
+    shown(state).iter().zip(entries(state)).zip(LETTERS).filter_map(told).collect()
 }

@@ -28,6 +28,8 @@ pub struct ViewerOptions {
     pub section: Option<Section>,
     /// The depth of the boxes.
     pub depth: Option<u32>,
+    /// From where on they are drawn (see [`super::settings::OverlaySettings::begin`]).
+    pub boxes_from: Option<u32>,
     /// Only the boxes of leaves.
     pub leaves_only: bool,
     /// What colours of boxes stand for.
@@ -128,6 +130,7 @@ impl ViewerOptions {
             (overlay.depth, overlay.from_depth, overlay.boxes) = (depth, depth, true);
         }
         overlay.leaves_only |= self.leaves_only;
+        overlay.begin = self.boxes_from.unwrap_or(overlay.begin);
         overlay.color = self.color_boxes.unwrap_or(overlay.color);
         if self.no_overlay {
             (overlay.boxes, overlay.planes) = (false, false);

@@ -115,6 +115,9 @@ pub struct OverlaySettings {
     pub occupancy: u32,
     /// Lines behind the surface.
     pub hidden_lines: bool,
+    /// From where on they are drawn, in parts of a hundred of the view's width from its left side: what is before that is the
+    /// picture alone, to hold it against the boxes.
+    pub begin: u32,
     /// Only the selected cell and what is below it.
     pub subtree_only: bool,
     /// Of a scene with two levels: which.
@@ -229,6 +232,7 @@ impl Default for OverlaySettings {
             slice_axis: 2,
             occupancy: 0,
             hidden_lines: true,
+            begin: 0,
             subtree_only: false,
             levels: Levels::default(),
             color: BoxColor::default(),

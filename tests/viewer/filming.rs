@@ -79,24 +79,14 @@ fn it_plays_at_any_speed_and_is_paused() {
     std::thread::sleep(Duration::from_millis(300));
     w.step();
     assert_eq!(w.state().filming.at, at);
-    w.click(Role::SpinButton, "Speed of the film");
-    w.step();
-    w.key(Modifiers::COMMAND, Key::A);
-    w.harness.event(eframe::egui::Event::Text("10000".to_owned()));
-    w.step();
-    w.key(Modifiers::NONE, Key::Enter);
+    w.set_number("Speed of the film", "10000");
     assert_eq!(w.state().filming.speed, 10_000.0);
     w.button("Play");
     w.until("the end", |s| s.filming.at == s.filming.last());
     w.step();
     assert!(w.state().filming.playing.is_none(), "at the end it rests");
     // From the end it begins anew; another workspace lets it rest.
-    w.click(Role::SpinButton, "Speed of the film");
-    w.step();
-    w.key(Modifiers::COMMAND, Key::A);
-    w.harness.event(eframe::egui::Event::Text("1".to_owned()));
-    w.step();
-    w.key(Modifiers::NONE, Key::Enter);
+    w.set_number("Speed of the film", "1");
     w.button("Play");
     assert!(w.state().filming.playing.is_some() && w.state().filming.at < 10);
     w.button("View workspace");

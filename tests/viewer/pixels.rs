@@ -44,6 +44,29 @@ fn differ(a: &RgbaImage, b: &RgbaImage, w: &Window) -> usize {
 }
 
 #[test]
+fn boxes_begin_where_it_is_said() {
+    let Some(mut w) = window("builtin:lecture", "boxes over half of the view") else { return };
+    let boxed = shot(&mut w);
+    w.click(Role::CheckBox, "Node boxes");
+    let bare = shot(&mut w);
+    w.click(Role::CheckBox, "Node boxes");
+    w.set_number("Drawn from", "50");
+    let half = shot(&mut w);
+    // Between the captions, and beside the line between both halves.
+    let (middle, area) = (w.viewport().center().x, w.viewport().shrink2(vec2(0.0, 90.0)));
+    let unlike = |a: &RgbaImage, right: bool| {
+        let pixels = half.enumerate_pixels().zip(a.pixels()).filter(|((x, y, _), _)| {
+            let at = eframe::egui::pos2(*x as f32, *y as f32);
+            area.contains(at) && (at.x - middle).abs() > 4.0 && (at.x > middle) == right
+        });
+        pixels.filter(|((_, _, p), q)| p.0.iter().zip(q.0).any(|(p, q)| p.abs_diff(q) > 12)).count()
+    };
+    assert!(unlike(&bare, true) > 100 && unlike(&boxed, false) > 100, "each half is of one kind");
+    assert_eq!(unlike(&bare, false), 0, "no boxes at the left");
+    assert_eq!(unlike(&boxed, true), 0, "boxes at the right");
+}
+
+#[test]
 fn the_lecture_is_drawn_with_its_boxes() {
     let Some(mut w) = window("builtin:lecture", "the lecture on the screen") else { return };
     w.click(Role::CheckBox, "Node boxes");

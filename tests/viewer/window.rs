@@ -253,6 +253,12 @@ impl Window {
             self.click(Role::DisclosureTriangle, "Parameters");
             self.step();
         }
+        self.set_number(name, value);
+    }
+
+    /// Types a number into the field of this name.
+    #[track_caller]
+    pub fn set_number(&mut self, name: &str, value: &str) {
         self.click(Role::SpinButton, name);
         self.step();
         self.key(Modifiers::COMMAND, Key::A);

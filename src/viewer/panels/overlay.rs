@@ -1,6 +1,6 @@
 //! Which boxes and planes are drawn over the picture.
 
-use eframe::egui::{Checkbox, ComboBox, Slider, Ui};
+use eframe::egui::{Checkbox, ComboBox, DragValue, Slider, Ui};
 
 use super::{Commands, heading};
 use crate::accel::cell::Layout;
@@ -73,6 +73,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
         combo.response.labelled_by(label.id).on_hover_text("What the colours of boxes stand for.");
     });
     ui.checkbox(&mut s.hidden_lines, "Hidden lines").on_hover_text("Lines behind the surface, thin and dashed.");
+    ui.horizontal(|ui| {
+        let label = ui.label("Drawn from");
+        let help = "Where boxes begin, from the left side of the view: what is before that is the picture alone, to hold it against the boxes.";
+        let begin = DragValue::new(&mut s.begin).range(0..=99).suffix(" %");
+        ui.add_enabled(!state.is_comparing(), begin).labelled_by(label.id).on_hover_text(help);
+    });
     if s != before {
         commands.push(Command::Overlay(s));
     }

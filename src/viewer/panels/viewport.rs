@@ -114,9 +114,13 @@ fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_
     let Place { view: rect, .. } = places[0];
     // Strips that have no picture yet show the first.
     let seen = if state.settings.panes.arrange == Arrange::Divider { rect } else { places[0].seen };
-    gpu::paint(&ui.painter_at(seen), rect, PANES[0], list.clone());
+    let bare = bare(rect, state);
+    gpu::paint(&ui.painter_at(bare.map_or(seen, |bare| seen.with_min_x(bare.right()))), rect, PANES[0], list.clone());
     if state.is_comparing() {
         others(ui, places, state, &list);
+    } else if let Some(bare) = bare {
+        gpu::paint(&ui.painter_at(bare), rect, PANES[1], DrawList { overlay: None, ..list });
+        ui.painter().vline(bare.right(), rect.y_range(), egui::Stroke::new(1.0, palette.text));
     }
     let marks = rays_over::marks(state);
     rays_over::paint(&ui.painter_at(rect), rect, &marks, &view, model.geometry.space(), palette);
@@ -124,6 +128,12 @@ fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_
     if state.picture.is_none() && there < all {
         ui.ctx().request_repaint();
     }
+}
+
+/// The part of the view over which boxes are left out, if there is one.
+fn bare(view: Rect, state: &State) -> Option<Rect> {
+    let begin = state.settings.overlay.begin.min(99) as f32 / 100.0;
+    (begin > 0.0 && !state.is_comparing()).then(|| view.with_max_x(view.left() + begin * view.width()))
 }
 
 /// Draws the pictures of other structures, each with its own boxes.
