@@ -218,8 +218,9 @@ fn caption(state: &State) -> String {
     let is_tree = !matches!(state.layout(), Some(cell::Layout::Flat { .. } | cell::Layout::Nested { .. }));
     let film = state.film_on_screen();
     if let Some((film, at)) = film {
+        let order = film.order_at(at).to_lowercase();
         let [at, last] = [at, film.last()].map(|event| format::count(event.into()));
-        text += &format!(", reconstructed order, event {at} of {last}");
+        text += &format!(", {order}, event {at} of {last}");
     } else if overlay.boxes && overlay.leaves_only {
         text += ", boxes of leaves";
     } else if overlay.boxes && is_tree {

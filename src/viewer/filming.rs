@@ -46,6 +46,7 @@ impl Default for Filming {
 pub fn make(shared: &Shared, shown: &Built, outline: Arc<Outline>) -> std::io::Result<Making> {
     let (accel, key, shared) = (Arc::clone(&shown.accel), shown.key.clone(), shared.clone());
     Job::spawn("film", shared.waker(), move |cancel, progress| {
+        shared.wait_for_memory();
         let cx = BuildCx::new(cancel.clone(), progress.clone(), shared.pool, shared.budget);
         Film::of(&Subject { id: key.entry.id, accel: accel.as_ref(), params: &key.params }, outline, &cx)
     })

@@ -240,6 +240,13 @@ impl Default for OverlaySettings {
     }
 }
 
+impl OverlaySettings {
+    /// What tells which boxes and planes are drawn, and not how.
+    pub const fn of_content(self) -> Self {
+        Self { hidden_lines: true, begin: 0, ..self }
+    }
+}
+
 /// What stands around the view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Workspace {

@@ -63,7 +63,7 @@ impl Shared {
     }
 
     /// Waits until all of that is back, so that what follows finds the room. Not for the window's thread.
-    fn wait_for_memory(&self) {
+    pub fn wait_for_memory(&self) {
         let threads = std::mem::take(&mut *self.giving_back.lock().unwrap_or_else(PoisonError::into_inner));
         threads.into_iter().for_each(|thread| drop(thread.join()));
     }

@@ -161,5 +161,8 @@ fn nodes_that_reinsertion_moved_are_shown_with_their_parents() {
     w.button("Back");
     assert_eq!(drawn(&mut w), (1, 3), "the root, what was moved and its two parents");
     assert!(w.says(&film.tell(film.last() - 1)) && film.tell(film.last() - 1).starts_with("Reinsertion "));
+    assert!(w.says("Moves by round and gain"));
+    let colors: Vec<[u8; 4]> = w.state().overlay.as_ref().expect("collected").lit.iter().map(|lit| lit.color).collect();
+    assert!(colors[0] != colors[1] && colors[1] != colors[2] && colors[2] == [255; 4], "{colors:?}");
     assert!(w.says("White: what was moved. Orange: its parent before, which is gone. Blue: its parent since."));
 }

@@ -181,8 +181,8 @@ pub struct Recorded {
     pub before: Built,
     /// What was moved, round by round; nothing if it gained nothing and was undone.
     pub rounds: Vec<Round>,
-    /// Nodes of the finished tree.
-    pub nodes: usize,
+    /// The SAH cost of the finished tree.
+    pub sah: f64,
 }
 
 /// Builds the tree anew and watches its nodes being moved, keeping at most so many moves of each round; nothing if the parameters
@@ -202,12 +202,15 @@ pub fn recorded(geometry: &Arc<Geometry>, p: &ParamValues, most: usize, cx: &Bui
     let copy = Draft { nodes: divided.nodes.clone(), refs: divided.refs.clone() };
     let mut log = Log::new(most);
     let moved = plan.reinserted(divided, Some(&mut log), cx)?;
-    let nodes = moved.arranged(geometry, &plan.costs, plan.limits, cx)?.nodes.len();
+    let finished = moved.arranged(geometry, &plan.costs, plan.limits, cx)?;
+    let whole = finished.nodes.first().map_or(0.0, |root| root.bounds().area());
+    let sah = if whole > 0.0 { finished.sum(&plan.costs) / whole } else { 0.0 };
+    drop(finished);
     let one_each = Limits { max_leaf: 1, max_depth: MAX_DEPTH };
     let draft = copy.arranged(geometry, &plan.costs, one_each, cx)?;
     let splits = plan.builder == Builder::Sbvh;
     let before = packed(geometry, Drafted { draft, splits, remarks: plan.remarks, peak }, cx)?;
-    Ok(Some(Recorded { before, rounds: log.rounds, nodes }))
+    Ok(Some(Recorded { before, rounds: log.rounds, sah }))
 }
 
 /// A tree over boxes, one in a leaf, whatever is in them; leaves refer to them by their index.

@@ -45,6 +45,15 @@ impl Draft {
         if inner > 0.0 { shared / inner } else { 0.0 }
     }
 
+    /// The SAH cost as it is, times the root's area.
+    pub fn sum(&self, costs: &Costs) -> f64 {
+        let own = |node: &Node| match node.left() {
+            Some(_) => costs.c_trav * node.bounds().area(),
+            None => costs.triangles(node.bounds().area(), node.count() as usize),
+        };
+        self.nodes.iter().map(own).sum()
+    }
+
     /// References to triangles below a node.
     pub fn references(&self, at: u32) -> u32 {
         let (mut references, mut open) = (0, vec![at]);

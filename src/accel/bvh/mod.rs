@@ -148,8 +148,8 @@ pub struct Recorded {
     pub before: Box<dyn Accel>,
     /// What was moved, round by round; nothing if it gained nothing and was undone.
     pub rounds: Vec<Round>,
-    /// Nodes of the finished tree, from which it is seen whether it is the one that was built before.
-    pub nodes: usize,
+    /// The SAH cost of the finished tree, from which it is seen whether it is the one that was built before.
+    pub sah: f64,
 }
 
 /// Builds the tree anew and watches its nodes being moved by reinsertion, keeping at most so many moves of each round; nothing if the
@@ -159,10 +159,10 @@ pub struct Recorded {
 /// Cancelled, or over the memory budget.
 pub fn recorded(geometry: &Arc<Geometry>, p: &ParamValues, most: usize, cx: &BuildCx) -> Result<Option<Recorded>, BuildError> {
     let recorded = build::recorded(geometry, p, most, cx)?;
-    Ok(recorded.map(|build::Recorded { before, rounds, nodes }| {
+    Ok(recorded.map(|build::Recorded { before, rounds, sah }| {
         // Nobody traces it: any road over its nodes will do.
         let before = Box::new(Bvh::<Watertight, true, true>::new(before));
-        Recorded { before, rounds, nodes }
+        Recorded { before, rounds, sah }
     }))
 }
 

@@ -174,6 +174,14 @@ impl Film {
         self.moves.is_some()
     }
 
+    /// What is to be said of the order at a position: of moves it is the one in which they were made.
+    pub fn order_at(&self, at: u32) -> &'static str {
+        match self.seen(at) {
+            Seen::Moves(..) => "Moves by round and gain",
+            Seen::Cells(..) | Seen::Finished(_) => "Reconstructed order",
+        }
+    }
+
     /// The last position.
     pub fn last(&self) -> u32 {
         self.replay.last() + self.moves.as_ref().map_or(0, Moves::last)

@@ -16,6 +16,9 @@ const SHARE: usize = 2;
 /// The most moves of a round that are shown, where a round is one event.
 const SHOWN: usize = 32;
 
+/// Costs of one tree, summed up in two ways, differ by no larger share.
+const SAME: f64 = 1e-5;
+
 /// One event.
 struct Event {
     /// The round it is in, or which it is.
@@ -46,8 +49,8 @@ impl Moves {
     /// Watches the tree being built, and lists the cells that it has before; nothing if nothing was moved.
     pub fn of(subject: &Subject<'_>, finished: Arc<Outline>, cx: &BuildCx) -> Result<Option<(Self, Arc<Outline>)>, FilmError> {
         let recorded = record_reinsertion(subject.accel.geometry(), subject.params, MOST / SHARE, cx)?;
-        let Some(Recorded { before, mut rounds, nodes }) = recorded else { return Ok(None) };
-        if num::index(nodes) != finished.len() {
+        let Some(Recorded { before, mut rounds, sah }) = recorded else { return Ok(None) };
+        if (sah - finished.sah()).abs() > SAME * sah {
             return Err(FilmError::Another);
         }
         if rounds.is_empty() {

@@ -261,11 +261,12 @@ fn a_tree_that_came_out_otherwise_is_refused() {
     let geometry = Arc::new(Geometry::new(&open(SMALL, &load).expect("built in"), &load).expect("fits"));
     let entry = registry::find("bvh").expect("registered");
     let mut params = entry.defaults();
+    params.set("builder", "median").and_then(|()| params.set("max_leaf", "1")).expect("in range");
     let accel = entry.build(&geometry, TestKind::Watertight, &params, &cx).expect("builds");
     let on = (&cx.budget, &cx.cancel, &cx.progress);
     let outline = Outline::of(accel.as_ref(), SahWeights::of(&params), on).expect("small");
-    // Of other parameters than the tree was built with, as if the time had run out elsewhere.
-    params.set("reinsertion", "on").and_then(|()| params.set("max_leaf", "1")).expect("in range");
+    // As if the time had run out at another round: as many nodes, in other places.
+    params.set("reinsertion", "on").expect("in range");
     let made = Film::of(&Subject { id: "bvh", accel: accel.as_ref(), params: &params }, Arc::new(outline), &cx);
     assert!(matches!(made, Err(FilmError::Another)));
 }

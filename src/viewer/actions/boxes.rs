@@ -27,7 +27,9 @@ pub(super) fn add(list: &mut List, state: &State) {
     toggle("Split planes on or off", has_split_planes(state), |o| o.planes = !o.planes);
     toggle("Empty cells on or off", has_empty_cells(state), |o| o.empty_cells = !o.empty_cells);
     toggle("Hidden lines on or off", shown, |o| o.hidden_lines = !o.hidden_lines);
-    toggle("Boxes over half of the view, or all of it", shown, |o| o.begin = if o.begin == 0 { 50 } else { 0 });
+    toggle("Boxes over half of the view, or all of it", shown && !state.is_comparing(), |o| {
+        o.begin = if o.begin == 0 { 50 } else { 0 }
+    });
     toggle("Boxes of the selected cell only, or of all", chosen, |o| o.subtree_only = !o.subtree_only);
     let overlay = OverlaySettings { boxes: !now.boxes, ..now };
     list.add("Boxes on or off", Command::Overlay(overlay)).key(BOXES).if_possible(shown);

@@ -75,23 +75,11 @@ impl Drawing {
             go_on()?;
             self.fill_triangle(triangle, out);
         }
-        let mut by_color: BTreeMap<[u8; 4], Lines> = BTreeMap::new();
         let boxes = overlay.boxes.iter().chain(&overlay.planes).chain(&overlay.tried);
-        for instance in boxes.chain(&overlay.lines).chain(&overlay.compared) {
-            go_on()?;
-            self.edges(instance, by_color.entry(instance.color).or_default());
-        }
-        for (color, lines) in &by_color {
-            self.strokes(lines, &LineStyle::BOX, [color[0], color[1], color[2]], out);
-        }
-        let mut lines = Lines::default();
+        self.by_color(boxes.chain(&overlay.lines).chain(&overlay.compared), &LineStyle::BOX, go_on, out)?;
         let lit = overlay.lit.iter().chain(&overlay.lit_lines);
-        for instance in lit.chain(&overlay.selected).chain(&overlay.selected_lines) {
-            go_on()?;
-            self.edges(instance, &mut lines);
-        }
-        self.strokes(&lines, &LineStyle::SELECTED, LineStyle::SELECTED.color.unwrap_or_default(), out);
-        Ok(())
+        let lit = lit.chain(&overlay.selected).chain(&overlay.selected_lines);
+        self.by_color(lit, &LineStyle::SELECTED, go_on, out)
     }
 
     /// The inside of a plane.
@@ -188,6 +176,25 @@ impl Drawing {
         let view = &self.view;
         let ndc = p.truncate() / (view.half_size * if view.orthographic { 1.0 } else { p.z });
         Vec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * Vec2::new(self.size[0] as f32, self.size[1] as f32)
+    }
+
+    /// The edges of boxes in one style.
+    fn by_color<'a>(
+        &self,
+        boxes: impl Iterator<Item = &'a BoxInstance>,
+        style: &LineStyle,
+        go_on: impl Fn() -> Result<(), String>,
+        out: &mut String,
+    ) -> Result<(), String> {
+        let mut by_color: BTreeMap<[u8; 4], Lines> = BTreeMap::new();
+        for instance in boxes {
+            go_on()?;
+            self.edges(instance, by_color.entry(instance.color).or_default());
+        }
+        for ([r, g, b, _], lines) in &by_color {
+            self.strokes(lines, style, [*r, *g, *b], out);
+        }
+        Ok(())
     }
 
     /// Hidden parts, halos, lines.

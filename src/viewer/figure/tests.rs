@@ -109,12 +109,11 @@ fn all_of_an_overlay_is_drawn_each_in_its_style() {
     let line = BoxInstance::line(a, b, color);
     let boxed = BoxInstance::new(&Aabb { min: a, max: a + Vec3::splat(0.1) }, color);
     let flat = BoxInstance::new(&Aabb { min: a, max: a + Vec3::new(0.1, 0.1, 0.0) }, color);
-    let white = LineStyle::SELECTED.color.expect("its own").map(|c| format!("{c:02x}")).concat();
     let drawn = |put: &dyn Fn(&mut Overlay)| {
         let svg = text(of(put));
         // A halo and a line for what is seen.
-        let [own, selected] = [color[..3].iter().map(|c| format!("{c:02x}")).collect::<String>(), white.clone()]
-            .map(|color| svg.matches(&format!("stroke=\"#{color}\"")).count());
+        let [own, selected] = [LineStyle::BOX, LineStyle::SELECTED]
+            .map(|style| svg.matches(&format!("stroke=\"#123456\" stroke-width=\"{}\"", style.width)).count());
         (svg.matches("<polygon").count(), own, selected)
     };
     assert_eq!(drawn(&|o| o.boxes = vec![boxed]), (0, 1, 0));

@@ -74,7 +74,6 @@ fn draw_styled(pass: &mut wgpu::RenderPass<'_>, style: &Uniform, corners: u32, i
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct StyleUniform {
-    color: [f32; 4],
     halo: [f32; 4],
     width: f32,
     halo_width: f32,
@@ -92,7 +91,6 @@ impl From<LineStyle> for StyleUniform {
             [r, g, b, last]
         };
         Self {
-            color: style.color.map_or([0.0; 4], |rgb| with(rgb, 1.0)),
             halo: with(style.halo, style.halo_alpha),
             width: style.width,
             halo_width: style.halo_width,

@@ -10,8 +10,6 @@
 // else is worked out a pixel at a time from the two ends.
 
 struct Style {
-    // Its own colour, used as far as the fourth component says.
-    color: vec4f,
     halo: vec4f,
     // Widths in points.
     width: f32,
@@ -136,7 +134,7 @@ fn vertex(
     if t.x > 0.0 && a.z > view.near {
         edge.dash_start = length(p_px - on_screen(a));
     }
-    edge.color = mix(color, vec4f(style.color.rgb, 1.0), style.color.a);
+    edge.color = color;
     edge.lateness = f32(instance) / view.boxes;
     edge.halo_width = halo_width;
     return edge;

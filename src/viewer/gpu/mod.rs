@@ -58,6 +58,8 @@ pub struct DrawList {
     pub base: Base,
     /// What is drawn over it.
     pub overlay: Option<Arc<Overlay>>,
+    /// From where on that is drawn, as a part of the width from the left side.
+    pub begin: f32,
     /// Whether lines and planes show where the surface is in front of them. The selected box does
     /// in any case.
     pub hidden_lines: bool,

@@ -79,7 +79,7 @@ pub struct Overlay {
     pub tried: Option<BoxInstance>,
     /// Lines of a volume that somebody compares with others.
     pub compared: Vec<BoxInstance>,
-    /// The selected box, over everything else and in its own style; its colour is not used.
+    /// The selected box, over everything else and in its own style.
     pub selected: Option<BoxInstance>,
     /// The same of what is no box: its lines.
     pub selected_lines: Vec<BoxInstance>,

@@ -43,6 +43,7 @@ pub(super) struct Drawn {
     background: [u8; 4],
     hidden_lines: bool,
     overlay: Option<u64>,
+    begin: f32,
     base: DrawnBase,
 }
 
@@ -62,6 +63,7 @@ impl Drawn {
             background: list.background,
             hidden_lines: list.hidden_lines,
             overlay: list.overlay.as_ref().map(|o| o.generation),
+            begin: list.begin,
             base: match &list.base {
                 Base::Nothing => DrawnBase::Nothing,
                 Base::Picture(picture) => DrawnBase::Picture(picture.generation),

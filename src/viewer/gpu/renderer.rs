@@ -133,6 +133,9 @@ impl Renderer {
         self.draw_base(encoder, pane, list);
         if list.overlay.is_some() {
             let mut pass = pane.targets.overlay_pass(encoder);
+            let [width, height] = size;
+            let begin = ((list.begin * width as f32).round() as u32).min(width);
+            pass.set_scissor_rect(begin, 0, width - begin, height);
             pass.set_bind_group(0, &pane.view.group, &[]);
             pass.set_bind_group(1, &pane.targets.surface_group, &[]);
             self.planes.draw(&mut pass, &pane.overlay);

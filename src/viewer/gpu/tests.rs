@@ -40,6 +40,7 @@ fn list(size: u32, base: Base) -> DrawList {
         background: [27, 30, 35, 255],
         base,
         overlay: None,
+        begin: 0.0,
         hidden_lines: true,
     }
 }

@@ -85,8 +85,8 @@ fn showing(state: &State) -> String {
 /// How far the film of the build is.
 fn filmed(state: &State) -> Option<String> {
     let (film, at) = state.film_on_screen()?;
-    let [at, last] = [at, film.last()].map(|event| format::count(event.into()));
-    Some(format!("Reconstructed order, event {at} of {last}"))
+    let (order, [at, last]) = (film.order_at(at), [at, film.last()].map(|event| format::count(event.into())));
+    Some(format!("{order}, event {at} of {last}"))
 }
 
 /// What of a curve of errors is on the screen.

@@ -11,10 +11,16 @@ use crate::viewer::actions;
 use crate::viewer::command::Command;
 use crate::viewer::filming::SPEEDS;
 use crate::viewer::format;
+use crate::viewer::kept::Built;
 use crate::viewer::sheets::What;
 use crate::viewer::state::State;
 use crate::viewer::theme::{self, Palette};
 
+/// What the button for a film does.
+const OFFER: &str =
+    "Replay how the structure was built, from what it is at last: cell by cell, or level by level if they are many.";
+/// What it does where reinsertion moved nodes.
+const AGAIN: &str = "To see which nodes reinsertion moved, the tree is built once more.";
 /// The part of the panel that the plot takes.
 const PLOT: f32 = 0.4;
 /// What stands beside the slider: its value and its name.
@@ -31,7 +37,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     let left = left.with_max_x(left.right() - theme::GUTTER);
     let mut hands = ui.new_child(UiBuilder::new().id_salt("film").max_rect(left));
     ScrollArea::vertical().auto_shrink(false).show(&mut hands, |ui| {
-        let as_table = title(ui, state, film, commands);
+        let as_table = title(ui, state, (film, at), commands);
         player(ui, state, commands);
         ui.add(Label::new(film.tell(at)).wrap());
         if let Some(text) = about_moves(state, film, at) {
@@ -44,17 +50,22 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Commands) {
     plot(ui, right, film, at, commands);
 }
 
+/// What a film of the shown structure is of.
+fn subject(shown: &Built) -> Subject<'_> {
+    Subject { id: shown.key.entry.id, accel: shown.accel.as_ref(), params: &shown.key.params }
+}
+
 /// What is to be known of nodes that are moved once the tree is built.
 fn about_moves(state: &State, film: &Film, at: u32) -> Option<&'static str> {
     let shown = state.shown.as_ref().filter(|shown| is_reinserted(&shown.key.params))?;
-    let subject = Subject { id: shown.key.entry.id, accel: shown.accel.as_ref(), params: &shown.key.params };
+    let subject = subject(shown);
     Some(match film.seen(at) {
         Seen::Moves(..) => "White: what was moved. Orange: its parent before, which is gone. Blue: its parent since.",
         _ if film.has_moves() => {
             "The tree was built once more, with one triangle in a leaf, to see which nodes reinsertion moves then."
         }
         _ if !subject.has_moves() => "Then reinsertion moved nodes: it can be seen of the BVH of a model in one level.",
-        _ => "Then reinsertion was tried, and undone since it gained nothing.",
+        _ => "Then reinsertion moved nothing that gained.",
     })
 }
 
@@ -68,13 +79,15 @@ fn offer(ui: &mut Ui, state: &State, commands: &mut Commands) {
             }
             return;
         }
-        let help =
-            "Replay how the structure was built, from what it is at last: cell by cell, or level by level if they are many.";
+        let moved = state.shown.as_ref().is_some_and(|shown| subject(shown).has_moves());
+        let help = if moved { format!("{OFFER} {AGAIN}") } else { OFFER.to_owned() };
         if ui.add_enabled(state.can_make_film(), Button::new("Make the film")).on_hover_text(help).clicked() {
             commands.push(Command::MakeFilm);
         }
         match &state.filming.failed {
-            Some(why) => drop(ui.add(Label::new(RichText::new(why).color(Palette::in_ui(ui).warn)).extend())),
+            Some(why) => {
+                drop(ui.add(Label::new(RichText::new(why).color(Palette::in_ui(ui).warn)).truncate()).on_hover_text(why))
+            }
             None => {
                 let text = RichText::new("The build, in reconstructed order.").color(Palette::in_ui(ui).dim);
                 ui.add(Label::new(text).extend());
@@ -89,8 +102,11 @@ fn label(ui: &mut Ui) {
     ui.label(RichText::new("FILM").small().strong().color(Palette::in_ui(ui).dim));
 }
 
-const fn help(order: Order) -> &'static str {
-    match order {
+const fn help(film: &Film) -> &'static str {
+    match film.order() {
+        _ if film.has_moves() => {
+            "The tree before nodes were moved, built once more, in an order that is reconstructed; then the moves, as they were made."
+        }
         Order::Splits => {
             "Replayed from the finished structure: cells are divided breadth first, as if the order had been kept, which it was not."
         }
@@ -101,10 +117,10 @@ const fn help(order: Order) -> &'static str {
 }
 
 /// The order, the way out, and whether costs are wanted in rows.
-fn title(ui: &mut Ui, state: &State, film: &Film, commands: &mut Commands) -> bool {
+fn title(ui: &mut Ui, state: &State, (film, at): (&Film, u32), commands: &mut Commands) -> bool {
     let row = ui.horizontal_wrapped(|ui| {
         label(ui);
-        ui.add(Label::new("Reconstructed order").extend()).on_hover_text(help(film.order()));
+        ui.add(Label::new(film.order_at(at)).extend()).on_hover_text(help(film));
         if ui.button("Close").on_hover_text("Put the film away.").accessible_name("Close the film").clicked() {
             commands.push(Command::CloseFilm);
         }

@@ -109,18 +109,18 @@ fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_
         background: palette.background.to_array(),
         base,
         overlay,
+        begin: begin(state),
         hidden_lines: state.settings.overlay.hidden_lines,
     };
     let Place { view: rect, .. } = places[0];
     // Strips that have no picture yet show the first.
     let seen = if state.settings.panes.arrange == Arrange::Divider { rect } else { places[0].seen };
-    let bare = bare(rect, state);
-    gpu::paint(&ui.painter_at(bare.map_or(seen, |bare| seen.with_min_x(bare.right()))), rect, PANES[0], list.clone());
+    gpu::paint(&ui.painter_at(seen), rect, PANES[0], list.clone());
     if state.is_comparing() {
         others(ui, places, state, &list);
-    } else if let Some(bare) = bare {
-        gpu::paint(&ui.painter_at(bare), rect, PANES[1], DrawList { overlay: None, ..list });
-        ui.painter().vline(bare.right(), rect.y_range(), egui::Stroke::new(1.0, palette.text));
+    } else if list.begin > 0.0 {
+        let begin = rect.left() + list.begin * rect.width();
+        ui.painter().vline(begin, rect.y_range(), egui::Stroke::new(1.0, palette.text));
     }
     let marks = rays_over::marks(state);
     rays_over::paint(&ui.painter_at(rect), rect, &marks, &view, model.geometry.space(), palette);
@@ -130,10 +130,9 @@ fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_
     }
 }
 
-/// The part of the view over which boxes are left out, if there is one.
-fn bare(view: Rect, state: &State) -> Option<Rect> {
-    let begin = state.settings.overlay.begin.min(99) as f32 / 100.0;
-    (begin > 0.0 && !state.is_comparing()).then(|| view.with_max_x(view.left() + begin * view.width()))
+/// From where on boxes are drawn, as a part of the view's width: over all of compared pictures.
+fn begin(state: &State) -> f32 {
+    if state.is_comparing() { 0.0 } else { state.settings.overlay.begin.min(99) as f32 / 100.0 }
 }
 
 /// Draws the pictures of other structures, each with its own boxes.

@@ -49,6 +49,10 @@ impl State {
             Outcome::Running => return,
             Outcome::Done(Ok(film)) => self.filming.made(film),
             Outcome::Done(Err(FilmError::Cancelled(_))) => {}
+            Outcome::Done(Err(FilmError::Memory(_) | FilmError::Outline(_))) if self.make_room() => {
+                self.filming.making = None;
+                return self.begin_film(self.filming.at); // there is room for it now, or one more can go
+            }
             Outcome::Done(Err(e)) => self.filming.failed = Some(super::finished::sentence(&format!("No film: {e}"))),
             Outcome::Died => self.filming.failed = Some("No film: making it failed. Please report this.".to_owned()),
         }

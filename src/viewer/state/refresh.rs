@@ -114,7 +114,7 @@ impl State {
             }
         }
         let (Some(shown), Some(view)) = (&self.shown, self.view()) else { return };
-        let settings = self.settings.overlay;
+        let settings = self.settings.overlay.of_content();
         let selected = self.picked.as_ref().and_then(Picked::selected).copied();
         let (needs_rows, outline) = (settings.subtree_only || settings.color.needs_rows(), self.tree.outline.clone());
         let visits = self.visiting.newest().filter(|_| settings.color == BoxColor::Visits);

@@ -3,8 +3,6 @@
 /// One way to draw the edges of boxes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineStyle {
-    /// A colour of its own, gamma-encoded; otherwise each box has one.
-    pub color: Option<[u8; 3]>,
     /// The colour of the halo.
     pub halo: [u8; 3],
     /// The width where nothing is in front.
@@ -26,7 +24,6 @@ pub struct LineStyle {
 impl LineStyle {
     /// The edges of boxes, with a dark halo so that they stand out on any surface.
     pub const BOX: Self = Self {
-        color: None,
         halo: [0x10, 0x12, 0x15],
         width: 1.5,
         halo_width: 3.0,
@@ -36,9 +33,8 @@ impl LineStyle {
         hidden_halo_alpha: 0.0,
         on_top: false,
     };
-    /// The edges of the selected box.
+    /// The edges of the selected box and of what else stands out.
     pub const SELECTED: Self = Self {
-        color: Some([0xFF; 3]),
         halo: [0; 3],
         width: 2.5,
         halo_width: 5.0,

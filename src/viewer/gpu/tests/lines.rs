@@ -53,9 +53,36 @@ fn hidden_lines_can_be_left_out_but_the_selected_box_stays() {
     let mut hidden = one_box(256, square(-0.5));
     hidden.hidden_lines = false;
     assert_eq!(along_row(&gpu.shot("hidden_off", &hidden), 192), (0, 0));
-    let selected = Overlay { generation: 2, selected: Some(BoxInstance { color: [0; 4], ..square(-0.5) }), ..Overlay::default() };
+    let selected = Overlay { generation: 2, selected: Some(square(-0.5)), ..Overlay::default() };
     hidden.overlay = Some(Arc::new(selected));
     assert!(along_row(&gpu.shot("hidden_selected", &hidden), 192).1 > 40);
+}
+
+#[test]
+fn what_stands_out_does_so_in_its_own_colour() {
+    let Some(mut gpu) = Headless::new("colours of what stands out") else { return };
+    let [orange, blue] = [[255, 140, 105, 255], [120, 190, 255, 255]];
+    for color in [orange, blue] {
+        let lit = Overlay { generation: 2, lit: vec![BoxInstance { color, ..square(0.5) }], ..Overlay::default() };
+        let image = gpu.shot("lit", &DrawList { overlay: Some(Arc::new(lit)), ..list(256, wall(256)) });
+        let drawn = image.pixels().filter(|p| p.0.iter().zip(color).all(|(a, b)| a.abs_diff(b) < 8)).count();
+        assert!(drawn > 200, "{color:?}: {drawn}");
+    }
+}
+
+#[test]
+fn an_overlay_begins_where_it_is_said() {
+    let Some(mut gpu) = Headless::new("an overlay over a part of the view") else { return };
+    let mut drawn = one_box(256, square(0.5));
+    let whole = gpu.shot("whole", &drawn);
+    drawn.begin = 0.5;
+    let half = gpu.shot("half", &drawn);
+    drawn.overlay = None;
+    let bare = gpu.shot("bare", &drawn);
+    for (x, y, pixel) in half.enumerate_pixels() {
+        assert_eq!(pixel, if x < 128 { bare.get_pixel(x, y) } else { whole.get_pixel(x, y) }, "{x}, {y}");
+    }
+    assert_ne!(whole, half);
 }
 
 #[test]

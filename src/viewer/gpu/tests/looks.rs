@@ -68,6 +68,7 @@ fn list(geometry: &Arc<Geometry>, palette: &Palette) -> DrawList {
         background: palette.background.to_array(),
         base: Base::Raster(Raster { mesh, color: palette.preview.to_array(), max_triangles: usize::MAX }),
         overlay: None,
+        begin: 0.0,
         hidden_lines: true,
     }
 }
