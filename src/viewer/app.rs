@@ -38,7 +38,7 @@ pub struct App {
     pace: Pace,
     /// How long this thread has worked for the present frame, besides having it drawn.
     own_work: Duration,
-    /// What it takes to draw that in triangles, in a run that reports its pace.
+    /// What it takes to draw that in triangles, where the command line drives and is told of it.
     tessellation: Option<Tessellation>,
     /// Where the panels were last drawn, and in which layer, in the order of the keys.
     panels: Vec<(LayerId, Rect)>,
@@ -94,7 +94,7 @@ impl App {
         let screenshot = options.screenshot.clone().map(|path| Screenshot::new(path, &options));
         let layout = if options.is_scripted() { SCRIPTED } else { 0 };
         let animation = options.animate.clone().map(Animation::new);
-        let tessellation = options.pace.then(|| Tessellation::watch(&cc.egui_ctx));
+        let tessellation = options.is_scripted().then(|| Tessellation::watch(&cc.egui_ctx));
         let app = Self {
             state,
             commands: Vec::new(),

@@ -1,5 +1,5 @@
-//! What the window's thread works to turn a frame's shapes into triangles, for runs that report their pace: eframe does it after
-//! the program's own work, where nobody can look, so it is done once more.
+//! What the window's thread works to turn a frame's shapes into triangles. eframe does it after the program's own work, where
+//! nobody can look, so for windows that the command line drives, which report their pace, it is done once more.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
