@@ -22,6 +22,7 @@ take() {
 take grid builtin:teapot --structure grid --spp 4
 take check builtin:teapot --spp 64 --check
 take errors builtin:cornell-box --errors image --spp 4 --no-overlay
+take prediction builtin:teapot --errors prediction --spp 4 --no-overlay
 take structure builtin:teapot --structure bvh --select overlap --try-plane x,0.4 --depth 4 --spp 16
 take ray builtin:teapot --follow 0.1,0.1 --beside kdtree,grid --spp 16
 take panes builtin:teapot --mode nodes --panes bvh,kdtree,grid --arrange divider --no-overlay --spp 4
@@ -33,7 +34,7 @@ if [ $# -gt 0 ]; then
     view='eye 2,17,25 target 0,11,-20 fov 55'
     take heat "$1" --structure bvh --mode nodes --no-overlay --spp 4 --camera "$view"
     take kdtree "$1" --structure kdtree --depth 12 --spp 4 --camera "$view"
-    take bvh "$1" --structure bvh --depth 6 --spp 16 --measure --camera "$view"
+    take bvh "$1" --structure bvh --depth 6 --boxes-from 50 --spp 16 --measure --camera "$view"
 fi
 
 # Eight seconds at most: turning, levels, structures.
