@@ -449,7 +449,7 @@ impl State {
         let Some(choices) = choices else { return };
         (self.picking, self.tree.selecting, self.hiding) = (None, None, None);
         self.hide_later(None);
-        choices.restore(&mut self.settings);
+        self.change_panes(|state| choices.restore(&mut state.settings));
         self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
         self.choose();
         // A selection belongs to the structure that it was made in.

@@ -217,7 +217,7 @@ impl State {
             }
             self.panes.all[which] = pane;
         }
-        failed.into_iter().rev().for_each(|which| self.close_pane(which));
+        self.change_panes(|state| failed.into_iter().rev().for_each(|which| state.close_pane(which)));
         self.fit_ranges();
     }
 
