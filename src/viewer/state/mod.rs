@@ -27,6 +27,8 @@ mod refresh;
 mod rehiding;
 mod saving;
 mod sectioning;
+#[cfg(test)]
+mod tests;
 mod tiling;
 mod touring;
 mod trading;
@@ -632,6 +634,7 @@ impl State {
         self.advance_check();
         self.follow_viewport();
         self.refresh_picture();
+        self.advance_visits(); // those beside take what A has
         self.advance_panes();
         self.advance_errors();
         self.advance_tradeoffs();
@@ -640,7 +643,6 @@ impl State {
         self.advance_statistics();
         self.advance_prediction();
         self.advance_textures();
-        self.advance_visits();
         self.advance_tour();
         self.refresh_overlay();
         self.advance_again();
