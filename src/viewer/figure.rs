@@ -93,9 +93,10 @@ impl Figure {
         let view = self.view.map(|side| side as f32);
         let beneath = self.beneath();
         let places = self.layout.places(view, beneath);
-        let [width, pictures] = self.layout.size(view, beneath);
+        let [across, pictures] = self.layout.size(view, beneath);
+        let width = across.max(words::page_of(&self.legends));
         let lines = wrapped(&self.caption, width - 2.0 * theme::GUTTER, theme::BODY);
-        let legends = words::legends_height(self.legends.len(), width);
+        let legends = words::legends_height(&self.legends, width);
         let height = pictures + legends + MARGIN + LINE * lines.len() as f32;
         let mut out = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n\

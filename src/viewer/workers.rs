@@ -217,12 +217,16 @@ pub fn curves(shared: &Shared, shown: &Built, cell: Cell) -> std::io::Result<Cur
 /// The list of a structure's cells, on its way.
 pub type Outlining = Job<Result<Listed, OutlineError>>;
 
-/// Starts listing the cells of a structure.
-pub fn outline(shared: &Shared, shown: &Built) -> std::io::Result<Outlining> {
-    let (accel, weights) = (Arc::clone(&shown.accel), SahWeights::of(&shown.key.params));
-    let budget = shared.budget.clone();
+/// Starts listing the cells of a structure, but where they are `listed` already.
+pub fn outline(shared: &Shared, built: &Built, listed: Option<Arc<Outline>>) -> std::io::Result<Outlining> {
+    let (accel, weights) = (Arc::clone(&built.accel), SahWeights::of(&built.key.params));
+    let its = shared.clone();
     Job::spawn("outline", shared.waker(), move |cancel, progress| {
-        let outline = Outline::of(accel.as_ref(), weights, (&budget, cancel, progress))?;
+        if let Some(outline) = listed {
+            return Ok(Listed::of(outline));
+        }
+        its.wait_for_memory();
+        let outline = Outline::of(accel.as_ref(), weights, (&its.budget, cancel, progress))?;
         Ok(Listed::of(Arc::new(outline)))
     })
 }

@@ -211,6 +211,8 @@ fn compared_pictures_have_their_captions_and_legends_beneath() {
     let svg = text_of(&written);
     assert!(!svg.contains("NaN") && resvg::usvg::Tree::from_str(&svg, &resvg::usvg::Options::default()).is_ok());
     assert_eq!(svg.matches("<linearGradient ").count(), 1);
+    let page = words::page_of(&written.legends);
+    assert!(page > 88.0 && svg.contains(&format!(" viewBox=\"0 0 {page} ")), "the page is as wide as the legend: {page}");
     for part in [">Nodes visited a ray</text>", ">12.0</text>", ">a &lt;b&gt; &amp; c</text>"] {
         assert!(svg.contains(part), "{part}: {svg}");
     }

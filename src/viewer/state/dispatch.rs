@@ -160,7 +160,7 @@ impl State {
             Command::PutPane(which, choice) => self.change_panes(|state| state.settings.panes.put(which, choice)),
             Command::ClosePane(which) => self.change_panes(|state| state.close_pane(which)),
             Command::TunePane(which) => self.panes.tuned = which,
-            Command::Arrange(arrange) => self.settings.panes.arrange = arrange,
+            Command::Arrange(arrange) => self.change_panes(|state| state.settings.panes.arrange = arrange),
             Command::Divider(which, at) => self.settings.panes.move_divider(which, at),
             Command::FitRange => self.fit_anew(),
             Command::SaveWorkspace => self.ask_where_to_save(),

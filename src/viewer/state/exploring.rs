@@ -30,6 +30,7 @@ impl State {
                     self.follow_selection();
                 }
                 Outcome::Done(Err(OutlineError::Cancelled(_))) => self.tree.of = None,
+                Outcome::Done(Err(OutlineError::Memory(_))) if self.make_room(None) => self.tree.of = None, // it is listed again
                 Outcome::Done(Err(e)) => self.tree.failed = Some(super::finished::sentence(&format!("No tree: {e}"))),
                 Outcome::Died => self.tree.failed = Some("No tree: listing the cells failed. Please report this.".to_owned()),
             }
@@ -43,7 +44,7 @@ impl State {
             return;
         }
         self.tree.of = Some(shown.key.clone());
-        self.tree.outlining = workers::outline(&self.shared, shown).ok();
+        self.tree.outlining = workers::outline(&self.shared, shown, self.panes.outline_of(&shown.key)).ok();
     }
 
     /// Whether somebody looks at the list of cells, boxes are drawn by what it says, or a film is made of it.

@@ -108,7 +108,7 @@ impl State {
                 self.show(built);
             }
             Outcome::Done(Err(BuildError::Cancelled(_))) => {}
-            Outcome::Done(Err(BuildError::Memory { .. })) if self.make_room() => {
+            Outcome::Done(Err(BuildError::Memory { .. })) if self.make_room(None) => {
                 self.building = None;
                 return self.choose(); // there is room for it now, or one more can go
             }

@@ -1,7 +1,7 @@
 //! What is kept of models and structures: instances or flattened triangles, the memory that all may take, and what leaving out
 //! saves.
 
-use super::State;
+use super::{Pane, State};
 use crate::job::Outcome;
 use crate::viewer::kept::{Built, Key};
 use crate::viewer::model::Instances;
@@ -38,24 +38,27 @@ impl State {
         if self.tree.failed.is_some() {
             self.tree.clear(); // there may be room for it now
         }
+        self.panes.all.iter_mut().for_each(|pane| pane.boxes.list_again());
         let mut left = self.shared.budget.used();
         while left > limit
-            && let Some(oldest) = self.kept.take_oldest(&self.in_use())
+            && let Some(oldest) = self.kept.take_oldest(&self.in_use(None))
         {
             left = left.saturating_sub(oldest.bytes());
             self.shared.give_back(oldest);
         }
     }
 
-    /// The structures whose pictures are on the screen: to forget that they are kept would free nothing.
-    fn in_use(&self) -> Vec<Key> {
-        let others = self.panes.all.iter().filter_map(|pane| pane.built.as_ref());
+    /// The structures whose pictures are on the screen: to forget that they are kept would free nothing. `beside` is a pane that
+    /// is looked at apart from the others.
+    fn in_use(&self, beside: Option<&Pane>) -> Vec<Key> {
+        let others = self.panes.all.iter().chain(beside).filter_map(|pane| pane.built.as_ref());
         self.shown.iter().chain(others).map(|built| built.key.clone()).collect()
     }
 
-    /// Gives back the least recently used structure that is kept, which the next build waits for; false if there is none.
-    pub(super) fn make_room(&mut self) -> bool {
-        let oldest = self.kept.take_oldest(&self.in_use());
+    /// Gives back the least recently used structure that is kept, which the next build or list waits for; false if there is none.
+    /// `beside` is the pane that needs the room, if it is one.
+    pub(super) fn make_room(&mut self, beside: Option<&Pane>) -> bool {
+        let oldest = self.kept.take_oldest(&self.in_use(beside));
         let there = oldest.is_some();
         self.shared.give_back(oldest);
         there

@@ -27,6 +27,8 @@ mod refresh;
 mod rehiding;
 mod saving;
 mod sectioning;
+#[cfg(test)]
+mod tests;
 mod tiling;
 mod touring;
 mod trading;
@@ -449,7 +451,7 @@ impl State {
         let Some(choices) = choices else { return };
         (self.picking, self.tree.selecting, self.hiding) = (None, None, None);
         self.hide_later(None);
-        choices.restore(&mut self.settings);
+        self.change_panes(|state| choices.restore(&mut state.settings));
         self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
         self.choose();
         // A selection belongs to the structure that it was made in.
@@ -632,6 +634,7 @@ impl State {
         self.advance_check();
         self.follow_viewport();
         self.refresh_picture();
+        self.advance_visits(); // those beside take what A has
         self.advance_panes();
         self.advance_errors();
         self.advance_tradeoffs();
@@ -640,7 +643,6 @@ impl State {
         self.advance_statistics();
         self.advance_prediction();
         self.advance_textures();
-        self.advance_visits();
         self.advance_tour();
         self.refresh_overlay();
         self.advance_again();

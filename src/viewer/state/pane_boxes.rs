@@ -3,16 +3,18 @@
 
 use std::sync::Arc;
 
-use super::panes::Pane;
+use super::panes::{Pane, Panes};
 use super::visiting::{Of, Visiting};
 use super::{State, finished};
 use crate::accel::outline::{Outline, OutlineError};
 use crate::job::Outcome;
+use crate::lab::Visits;
 use crate::render::{self, Mode};
 use crate::viewer::gpu::Overlay;
-use crate::viewer::kept::Built;
+use crate::viewer::kept::Key;
 use crate::viewer::overlay::{Collected, Known, Wanted};
 use crate::viewer::settings::BoxColor;
+use crate::viewer::tree::Listed;
 use crate::viewer::workers::{self, Collecting, Outlining};
 
 /// What is known and under way for the boxes over one picture.
@@ -37,9 +39,32 @@ impl Boxes {
         self.visiting.stop();
     }
 
+    /// Forgets that the cells did not fit: there may be room for them now.
+    pub(super) fn list_again(&mut self) {
+        self.unlisted = false;
+    }
+
     /// The amounts that colours of a kind stand for.
     fn amounts_of(&self, color: BoxColor) -> Option<[f32; 2]> {
         self.amounts.filter(|_| self.collected_for.as_ref().is_some_and(|wanted| wanted.settings.color == color))
+    }
+}
+
+impl Panes {
+    /// What is known and under way of those of a structure.
+    fn boxes_of(&self, key: &Key) -> impl Iterator<Item = &Boxes> {
+        let its = |pane: &&Pane| pane.built.as_ref().is_some_and(|built| built.key == *key);
+        self.all.iter().filter(its).map(|pane| &pane.boxes)
+    }
+
+    /// The list of a structure's cells, if one of them has it.
+    pub(super) fn outline_of(&self, key: &Key) -> Option<Arc<Outline>> {
+        self.boxes_of(key).find_map(|boxes| boxes.outline.clone())
+    }
+
+    /// What was counted of a view of a structure, if that was done for one of them.
+    pub(super) fn visits_of(&self, of: &Of) -> Option<Arc<Visits>> {
+        self.all.iter().find_map(|pane| pane.boxes.visiting.found_of(of))
     }
 }
 
@@ -113,7 +138,7 @@ impl State {
         }
     }
 
-    /// Lists the cells of a pane's structure while colours need their rows.
+    /// Gets the list of the cells of a pane's structure while colours need their rows: pictures of one structure share one.
     fn advance_rows(&mut self, pane: &mut Pane) {
         if !self.needs_rows_beside() {
             (pane.boxes.outlining, pane.boxes.unlisted) = (None, false);
@@ -125,25 +150,46 @@ impl State {
         if let Some(job) = pane.boxes.outlining.take() {
             match job.poll() {
                 Outcome::Running => pane.boxes.outlining = Some(job),
-                Outcome::Done(Ok(listed)) => pane.boxes.outline = Some(listed.outline),
-                Outcome::Done(Err(OutlineError::Cancelled(_))) => {}
-                Outcome::Done(Err(e)) => self.unlisted(pane, &e.to_string()),
-                Outcome::Died => self.unlisted(pane, "listing its cells failed. Please report this"),
+                over => {
+                    self.listed(pane, over);
+                    (self.shared.wake)(); // others may wait for it
+                }
             }
         }
-        let Some(built) = &pane.built else { return };
-        let idle = pane.boxes.outlining.is_none() && pane.boxes.outline.is_none() && !pane.boxes.unlisted;
-        if idle && pane.picture.is_some() && !self.is_measuring() {
-            pane.boxes.outline = self.listed_already(built);
-            if pane.boxes.outline.is_none() {
-                pane.boxes.outlining = workers::outline(&self.shared, built).ok();
-            }
+        let Some(built) = pane.built.as_ref().filter(|_| pane.boxes.outline.is_none()) else { return };
+        if let Some(outline) = self.listed_elsewhere(&built.key) {
+            (pane.boxes.outline, pane.boxes.outlining, pane.boxes.unlisted) = (Some(outline), None, false);
+        } else if self.is_listed_elsewhere(&built.key) {
+            pane.boxes.outlining = None; // that one is taken
+        } else if self.panes.boxes_of(&built.key).any(|boxes| boxes.unlisted) {
+            pane.boxes.unlisted = true; // why was said
+        } else if pane.boxes.outlining.is_none() && !pane.boxes.unlisted && pane.picture.is_some() && !self.is_measuring() {
+            pane.boxes.outlining = workers::outline(&self.shared, built, None).ok();
         }
     }
 
-    /// The list of the shown structure's cells, if that is the same.
-    fn listed_already(&self, built: &Built) -> Option<Arc<Outline>> {
-        self.tree.outline.clone().filter(|_| self.tree.of.as_ref() == Some(&built.key))
+    /// Takes in the list of a pane's cells, or why there is none.
+    fn listed(&mut self, pane: &mut Pane, over: Outcome<Result<Listed, OutlineError>>) {
+        match over {
+            Outcome::Done(Ok(listed)) => pane.boxes.outline = Some(listed.outline),
+            Outcome::Running | Outcome::Done(Err(OutlineError::Cancelled(_))) => {}
+            Outcome::Done(Err(OutlineError::Memory(_))) if self.make_room(Some(&*pane)) => {} // it is listed again
+            Outcome::Done(Err(e)) => self.unlisted(pane, &e.to_string()),
+            Outcome::Died => self.unlisted(pane, "listing its cells failed. Please report this"),
+        }
+    }
+
+    /// The list of a structure's cells, if another picture has it.
+    fn listed_elsewhere(&self, key: &Key) -> Option<Arc<Outline>> {
+        let first = self.tree.outline.as_ref().filter(|_| self.tree.of.as_ref() == Some(key));
+        first.cloned().or_else(|| self.panes.outline_of(key))
+    }
+
+    /// Whether it is made for another picture, or will be for A, which needs the same.
+    fn is_listed_elsewhere(&self, key: &Key) -> bool {
+        let shown = self.shown.as_ref().is_some_and(|shown| shown.key == *key);
+        let first = shown && (self.tree.outlining.is_some() || self.tree.of.as_ref() != Some(key));
+        first || self.panes.boxes_of(key).any(|boxes| boxes.outlining.is_some())
     }
 
     /// Says why there is no list of a pane's cells.
@@ -159,11 +205,29 @@ impl State {
         Some(self.visited_view(&built.key)).filter(|of| pane.boxes.visiting.lacks(of))
     }
 
-    /// Counts how often rays of the view enter the cells of a pane's structure, where boxes are coloured by it.
+    /// What was counted of that for another picture.
+    fn counted_elsewhere(&self, of: &Of) -> Option<Arc<Visits>> {
+        self.visiting.found_of(of).or_else(|| self.panes.visits_of(of))
+    }
+
+    /// Whether that is counted for another picture, or will be for A.
+    fn is_counted_elsewhere(&self, of: &Of) -> bool {
+        self.awaited_visits().as_ref() == Some(of) || self.panes.all.iter().any(|pane| pane.boxes.visiting.counts(of))
+    }
+
+    /// Counts how often rays of the view enter the cells of a pane's structure, where boxes are coloured by it. Pictures of one
+    /// structure share what was counted: a second count ends after other rays.
     fn advance_pane_visits(&mut self, pane: &mut Pane) {
         let wanted = self.wanted_visits(pane);
+        if let Some((of, visits)) = wanted.as_ref().and_then(|of| Some((of.clone(), self.counted_elsewhere(of)?))) {
+            pane.boxes.visiting.take(of, visits, &self.shared);
+        }
+        let wanted = self.wanted_visits(pane).filter(|of| !self.is_counted_elsewhere(of));
         if !pane.boxes.visiting.take_in(wanted.as_ref(), &self.shared) {
             return self.fail_visits();
+        }
+        if wanted.as_ref().is_some_and(|of| !pane.boxes.visiting.lacks(of)) {
+            (self.shared.wake)(); // others may wait for it
         }
         let (Some(of), Some(built), Some(whole)) = (wanted, &pane.built, self.traced_view(Mode::Shaded)) else { return };
         if pane.whole().is_some() && pane.boxes.visiting.lacks(&of) && !self.is_measuring() {

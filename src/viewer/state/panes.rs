@@ -217,7 +217,7 @@ impl State {
             }
             self.panes.all[which] = pane;
         }
-        failed.into_iter().rev().for_each(|which| self.close_pane(which));
+        self.change_panes(|state| failed.into_iter().rev().for_each(|which| state.close_pane(which)));
         self.fit_ranges();
     }
 
@@ -241,7 +241,7 @@ impl State {
                     None
                 }
                 Outcome::Done(Err(BuildError::Cancelled(_))) => None,
-                Outcome::Done(Err(BuildError::Memory { .. })) if self.make_room() => None, // it is built again
+                Outcome::Done(Err(BuildError::Memory { .. })) if self.make_room(Some(&*pane)) => None, // it is built again
                 Outcome::Done(Err(e)) => Some(super::finished::sentence(&e.to_string())),
                 Outcome::Died => Some("the builder failed. Please report this model.".to_owned()),
             };

@@ -43,16 +43,30 @@ impl Visiting {
         self.found.as_ref().is_none_or(|(found, _)| found != of)
     }
 
+    /// What was counted of that.
+    pub(super) fn found_of(&self, of: &Of) -> Option<Arc<Visits>> {
+        self.found.as_ref().filter(|(found, _)| found == of).map(|(_, visits)| Arc::clone(visits))
+    }
+
+    /// Whether that is being counted.
+    pub(super) fn counts(&self, of: &Of) -> bool {
+        self.running.as_ref().is_some_and(|(running, _)| running == of)
+    }
+
+    /// Takes what was counted of that, here or for another picture of it, and counts no more.
+    pub(super) fn take(&mut self, of: Of, visits: Arc<Visits>, shared: &Shared) {
+        self.running = None;
+        self.number += 1;
+        shared.give_back(self.found.replace((of, visits)));
+    }
+
     /// Takes in what was counted; stops what is of something else than is wanted. False if counting failed.
     pub(super) fn take_in(&mut self, wanted: Option<&Of>, shared: &Shared) -> bool {
         let Some((of, job)) = self.running.take() else { return true };
         match job.poll() {
             Outcome::Running if wanted == Some(&of) => self.running = Some((of, job)),
             Outcome::Running | Outcome::Done(Err(_)) => {}
-            Outcome::Done(Ok(visits)) => {
-                self.number += 1;
-                shared.give_back(self.found.replace((of, Arc::new(visits))));
-            }
+            Outcome::Done(Ok(visits)) => self.take(of, Arc::new(visits), shared),
             Outcome::Died => return false,
         }
         true
@@ -84,7 +98,7 @@ impl State {
     }
 
     /// What those of the shown structure are yet to be counted of.
-    fn awaited_visits(&self) -> Option<Of> {
+    pub(super) fn awaited_visits(&self) -> Option<Of> {
         let shown = self.shown.as_ref().filter(|_| self.wants_visits())?;
         Some(self.visited_view(&shown.key)).filter(|of| self.visiting.lacks(of))
     }
@@ -99,9 +113,12 @@ impl State {
         self.visiting.found.as_ref().filter(|_| self.wants_visits()).map(|(_, visits)| &**visits)
     }
 
-    /// Takes in what was counted, and counts anew once the view has changed and is on the screen.
+    /// Takes in what was counted, here or for a picture beside, and counts anew once the view has changed and is on the screen.
     pub(super) fn advance_visits(&mut self) {
         let wanted = self.awaited_visits();
+        if let Some((of, visits)) = wanted.as_ref().and_then(|of| Some((of.clone(), self.panes.visits_of(of)?))) {
+            self.visiting.take(of, visits, &self.shared);
+        }
         if !self.visiting.take_in(wanted.as_ref(), &self.shared) {
             return self.fail_visits();
         }
