@@ -49,7 +49,7 @@ impl State {
             Outcome::Running => return,
             Outcome::Done(Ok(film)) => self.filming.made(film),
             Outcome::Done(Err(FilmError::Cancelled(_))) => {}
-            Outcome::Done(Err(FilmError::Memory(_) | FilmError::Outline(_))) if self.make_room() => {
+            Outcome::Done(Err(FilmError::Memory(_) | FilmError::Outline(_))) if self.make_room(None) => {
                 self.filming.making = None;
                 return self.begin_film(self.filming.at); // there is room for it now, or one more can go
             }

@@ -82,7 +82,7 @@ impl State {
 
     /// The boxes of the pane's own structure that the present view is to show.
     fn wanted_boxes(&self, pane: &Pane) -> Option<Wanted> {
-        let settings = self.settings.overlay;
+        let settings = self.settings.overlay.of_content();
         // Which of its cells would be below the selected one nobody can say.
         let drawn = (settings.boxes || settings.planes) && !settings.subtree_only;
         let limit = self.graphics.comfortable_boxes() / (self.panes.all.len() + 1);
