@@ -201,7 +201,7 @@ fn plots() -> clap::builder::PossibleValuesParser {
 
 /// Any name: there is no window to show a plot in.
 #[cfg(not(feature = "viewer"))]
-const fn plots() -> clap::builder::NonEmptyStringValueParser {
+fn plots() -> clap::builder::NonEmptyStringValueParser {
     clap::builder::NonEmptyStringValueParser::new()
 }
 
