@@ -74,7 +74,7 @@ pub struct Args {
     #[arg(long, conflicts_with = "measure")]
     pub check: bool,
     /// Begin in the Compare workspace with that plot: image, intersection, model, prediction or scaling; with --screenshot, fill it first.
-    #[arg(long, value_name = "PLOT", value_parser = ["image", "intersection", "model", "scaling"], conflicts_with_all = ["measure", "check"])]
+    #[arg(long, value_name = "PLOT", value_parser = plots(), conflicts_with_all = ["measure", "check"])]
     pub errors: Option<String>,
     /// Begin in the Structure workspace; with --screenshot, select that cell first: dearest, deepest, fullest, overlap or emptiest.
     #[arg(long, value_name = "CELL", conflicts_with_all = ["measure", "check", "errors"])]
@@ -193,6 +193,18 @@ pub fn run(_: Args) -> Result<(), Failure> {
     Err(Failure::Other(anyhow::anyhow!("this build has no window; all commands work without one. See 'boxwood --help'")))
 }
 
+/// The plots of the Compare workspace by their names.
+#[cfg(feature = "viewer")]
+fn plots() -> clap::builder::PossibleValuesParser {
+    crate::viewer::tradeoffs::Plot::ALL.map(crate::viewer::tradeoffs::Plot::id).into()
+}
+
+/// Any name: there is no window to show a plot in.
+#[cfg(not(feature = "viewer"))]
+fn plots() -> clap::builder::NonEmptyStringValueParser {
+    clap::builder::NonEmptyStringValueParser::new()
+}
+
 /// A kind of bounding volume that is compared.
 fn volume(text: &str) -> Result<&'static str, String> {
     let known = crate::lab::fitted_kinds().find(|kind| *kind == text);
@@ -220,4 +232,30 @@ fn place(text: &str) -> Result<[f32; 2], String> {
     let parsed = text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
     let inside = parsed.filter(|place: &[f32; 2]| place.iter().all(|x| (-1.0..=1.0).contains(x)));
     inside.ok_or_else(|| "a place is two numbers from -1 to 1, as in 0.1,-0.2".to_owned())
+}
+
+#[cfg(all(test, feature = "viewer"))]
+mod tests {
+    use clap::{Args as _, Command, FromArgMatches as _};
+
+    use super::*;
+    use crate::viewer::tradeoffs::Plot;
+
+    #[test]
+    fn every_plot_can_be_asked_for_by_its_name_and_the_help_says_all() {
+        let command = || Args::augment_args(Command::new("boxwood"));
+        let errors = |name: &str| {
+            let matches = command().try_get_matches_from(["boxwood", "--errors", name]).map_err(|e| e.to_string())?;
+            Args::from_arg_matches(&matches).map(|args| args.errors).map_err(|e| e.to_string())
+        };
+        let help = command().get_arguments().find(|arg| arg.get_id() == "errors").and_then(|arg| arg.get_help().cloned());
+        let help = help.expect("there is help").to_string();
+        for plot in Plot::ALL {
+            assert_eq!(errors(plot.id()), Ok(Some(plot.id().to_owned())));
+            assert_eq!(plot.id().parse(), Ok(plot));
+            assert!(help.contains(plot.id()), "{help}");
+        }
+        let none = errors("cost").expect_err("there is no such plot");
+        assert!(Plot::ALL.iter().all(|plot| none.contains(plot.id())), "{none}");
+    }
 }

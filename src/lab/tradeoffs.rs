@@ -84,7 +84,7 @@ pub struct TradeoffRow {
     pub costs: Option<Costs>,
     /// Seconds that the prediction took: the walk over the cells, and timing and counting rays for the fit.
     pub prediction_secs: Option<f64>,
-    /// Nanoseconds of a thread for a ray, measured, by kind.
+    /// Nanoseconds of a thread for a ray, measured while all threads are at work, by kind.
     pub ns: BTreeMap<RayKind, f64>,
     /// By triangle test, on rays that are hard for them.
     pub tests: Vec<TestRow>,

@@ -79,6 +79,11 @@ impl<T> History<T> {
         Some(after)
     }
 
+    /// All of them.
+    pub fn all_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.behind.iter_mut().chain(&mut self.ahead)
+    }
+
     /// Whether there is a state before.
     pub const fn has_back(&self) -> bool {
         !self.behind.is_empty()
@@ -105,6 +110,9 @@ pub struct Choices {
     /// Which triangles are seen, if not all.
     #[serde(skip)]
     pub visible: Option<Arc<Visibility>>,
+    /// The number of a set of hidden triangles of a workspace file, until that is read: then it is what is hidden.
+    #[serde(skip)]
+    pub hidden: Option<usize>,
     /// What is selected.
     #[serde(skip)]
     pub picked: Option<Picked>,
@@ -121,6 +129,7 @@ impl Choices {
             section: settings.section,
             panes: settings.panes.clone(),
             visible: settings.visible.clone(),
+            hidden: None,
             picked: picked.cloned(),
         }
     }
@@ -138,6 +147,13 @@ impl Choices {
         settings.panes = self.panes.clone();
         if settings.panes.on_screen().len() == dividers.len() {
             settings.panes.dividers = dividers;
+        }
+    }
+
+    /// Takes in its set of hidden triangles, if it awaits one: those that could be read are there.
+    pub fn take_hidden(&mut self, sets: &[Option<Arc<Visibility>>]) {
+        if let Some(set) = self.hidden.take() {
+            self.visible = sets.get(set).cloned().flatten();
         }
     }
 

@@ -32,10 +32,8 @@ pub struct Tree {
     pub selecting: Option<Selecting>,
     /// It is one of those that are walked over by keys.
     pub walking: bool,
-    /// That belongs to a bookmark or a file.
+    /// That belongs to a bookmark or a file, which await it.
     pub restoring: bool,
-    /// The plane that is tried in it once it is there.
-    pub retried: Option<(Axis, f64)>,
     /// A plane that is tried in the selected node: across which axis, and where from 0 to 1.
     pub tried: Option<(Axis, f64)>,
     /// The outcome of the selected node was asked for, though outcomes are hidden.

@@ -17,26 +17,26 @@ use egui_kittest::kittest::Queryable;
 
 use crate::window::{Setup, Window};
 
-const TEAPOT: &str = "builtin:teapot?triangles=1000";
+pub const TEAPOT: &str = "builtin:teapot?triangles=1000";
 
 /// High enough for everything of the panels to be in sight.
-const HIGH: f32 = 2400.0;
-const LOW: f32 = 800.0;
+pub const HIGH: f32 = 2400.0;
+pub const LOW: f32 = 800.0;
 
 /// A window whose file dialogs answer with this path, as soon as it is there.
-fn begin(model: &str, answer: &Path, height: f32) -> Window {
+pub fn begin(model: &str, answer: &Path, height: f32) -> Window {
     let mut setup = Setup { size: vec2(1280.0, height), answer: Some(answer.to_path_buf()), ..Setup::default() };
     setup.options.model = Some(model.to_owned());
     Window::new(setup)
 }
 
 /// The same, settled.
-fn open(model: &str, answer: &Path, height: f32) -> Window {
+pub fn open(model: &str, answer: &Path, height: f32) -> Window {
     begin(model, answer, height).settled()
 }
 
 /// Saves the window to a file that is not there yet, and reads that.
-fn saved(w: &mut Window, path: &Path) -> WorkspaceFile {
+pub fn saved(w: &mut Window, path: &Path) -> WorkspaceFile {
     let _ = std::fs::remove_file(path);
     w.key(Modifiers::COMMAND, Key::S);
     w.until("the file", |_| path.exists());
@@ -52,7 +52,7 @@ fn write_rays(w: &Window, path: &Path) {
     std::fs::write(path, lines).expect("written");
 }
 
-fn count_of_hidden(w: &Window) -> Option<u64> {
+pub fn count_of_hidden(w: &Window) -> Option<u64> {
     w.state().visible().map(|visible| visible.count())
 }
 
@@ -227,9 +227,11 @@ fn what_cannot_be_made_again_is_told_and_the_rest_opens() {
     w.settle();
     let state = w.state();
     let error = state.error.clone().expect("told");
-    for part in ["gone.rays", "hidden in a model of 5 triangles", "The rest of the workspace is open."] {
-        assert_eq!(error.matches(part).count(), if part.starts_with("The rest") { 2 } else { 1 }, "{part}: {error}");
+    let volumes = "Can't compare bounding volumes again: the node that they were around is not selected.";
+    for part in ["gone.rays", "hidden in a model of 5 triangles", volumes] {
+        assert_eq!(error.matches(part).count(), 1, "{part}: {error}");
     }
+    assert_eq!(error.matches("The rest of the workspace is open.").count(), 3, "{error}");
     assert!(state.visible().is_none() && state.ray_list.file.is_none() && state.fitting().is_none());
     assert_eq!((state.fits.drawn, state.tradeoffs.plot, state.settings.workspace), (None, Plot::Scaling, Workspace::View));
     assert_eq!((state.filming.speed, state.rays.speed), (10_000.0, 0.5));
@@ -248,6 +250,30 @@ fn what_cannot_be_made_again_is_told_and_the_rest_opens() {
     w.settle();
     assert_eq!((&w.state().error, count_of_hidden(&w)), (&None, None));
     assert_eq!(w.state().tradeoffs.plot, Plot::Scaling, "what a file does not say stays");
+}
+
+#[test]
+fn a_film_that_a_structure_has_not_and_volumes_of_a_node_that_is_not_there_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("grid.boxwood");
+    let mut w = open(TEAPOT, &path, LOW);
+    let mut file = saved(&mut w, &path);
+    w.settle();
+    file.settings.structure = "grid".to_owned();
+    file.selected = vec![(0, 0), (0, u32::MAX)];
+    file.made = Made { film: Some(3), volumes: true, ..Made::default() };
+    file.write(&path).expect("written");
+    w.open_path(&path.to_string_lossy());
+    w.until("the grid", |s| s.shown.as_ref().is_some_and(|shown| shown.key.entry.id == "grid"));
+    w.settle();
+    let error = w.state().error.clone().expect("told");
+    for part in ["Can't make the film again: this structure has none.", "Can't compare bounding volumes again: the node"] {
+        assert_eq!(error.matches(part).count(), 1, "{part}: {error}");
+    }
+    assert!(w.state().filming.film.is_none() && w.state().fitting().is_none());
+    w.button("Dismiss");
+    w.settle();
+    assert_eq!(w.state().error, None, "it is told once");
 }
 
 #[test]

@@ -21,6 +21,7 @@ mod hands;
 mod heat;
 mod layout;
 mod made_again;
+mod meanwhile;
 mod measuring;
 mod modes;
 mod needs;

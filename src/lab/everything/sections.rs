@@ -290,7 +290,7 @@ fn agreement(page: &mut Page, rows: &[TradeoffRow]) -> Result<(), String> {
     let points = prediction::points(rows);
     if let Some(all) = Agreement::of(&points) {
         let panel = prediction::plot::panel(rows, "Predicted against measured".to_owned());
-        let caption = "A mark for each structure and kind of ray. Predicted is what the areas of cells promise a random line that nothing cuts short, with what a node and a test cost, fitted to rays of all four kinds that were timed and counted in the same structure: rays that end early take less.";
+        let caption = "A mark for each structure and kind of ray. Predicted is what the areas of cells promise a random line that nothing cuts short, with what a node and a test cost, fitted to rays of all four kinds that were timed and counted in the same structure: rays that end early take less. Measured is the time of all threads together, times their number, over the rays, while costs are fitted to one thread with the others idle: where threads share cores, or the machine has other work, all marks may lie above the line for that alone.";
         page.plot(&svg_of(&[panel]).map_err(|error| error.to_string())?, caption);
         let kind = |kind: RayKind| {
             let of = Agreement::of(points.iter().filter(|point| point.kind == kind))?;

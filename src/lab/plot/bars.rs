@@ -6,6 +6,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::axis::{LABELS, even};
 use super::colors::colors_of;
 use super::{Area, Failed, TEXT, plain};
+use crate::geometry::num;
 use crate::lab::format;
 
 /// One thing, of several.
@@ -40,31 +41,58 @@ const NAMES: i32 = 120;
 const GAP: f64 = 0.2;
 /// Half of the height of the ends of a spread, in pixels.
 const END: i32 = 5;
-/// The axis is longer than the longest bar by this, so that there is room for figures.
-const ROOM: f64 = 1.4;
+/// What is left free around a panel, in pixels.
+const MARGIN: i32 = 12;
+/// What is left free between a bar and its figure, in pixels.
+const BESIDE: i32 = 8;
+/// The height of figures and names.
+const SMALL: i32 = TEXT - 2;
+/// About what a character of them takes, in pixels: rather more than less.
+const CHARACTER: f64 = 0.5 * SMALL as f64;
+/// The part of the axis that a figure may take, so that bars stay to be seen; a longer one is cut.
+const SAID: f64 = 0.6;
 
 impl Bar {
     fn is_known(&self) -> bool {
         self.length.is_finite()
     }
 
-    /// The figure that stands at its end.
-    fn said(&self) -> String {
+    /// Where its figure begins on the axis.
+    fn end(&self) -> f64 {
+        if self.is_known() { self.length.max(0.0) + self.spread.max(0.0) } else { 0.0 }
+    }
+
+    /// The figure that stands at its end, where the axis has so many pixels.
+    fn said(&self, pixels: f64) -> String {
         let note = if self.note.is_empty() { String::new() } else { format!(" {}", self.note) };
         let spread =
             if self.spread > 0.0 && self.is_known() { format!(" ±{}", format::number(self.spread)) } else { String::new() };
-        plain(&format!("{}{spread}{note}", format::number(self.length)))
+        let said = plain(&format!("{}{spread}{note}", format::number(self.length)));
+        let most = num::floor_index(SAID * pixels / CHARACTER, usize::MAX);
+        if said.chars().count() <= most {
+            return said;
+        }
+        said.chars().take(most.saturating_sub(1)).chain(std::iter::once('…')).collect()
     }
+}
+
+/// How far an axis of so many pixels goes: every figure has room beside its bar.
+fn end_of_axis(bars: &[Bar], pixels: f64) -> f64 {
+    let needs = |bar: &Bar| {
+        let free = pixels - f64::from(BESIDE) - CHARACTER * bar.said(pixels).chars().count() as f64;
+        bar.end() * pixels / free.max(1.0)
+    };
+    let end = bars.iter().map(needs).fold(0.0, f64::max);
+    if end > 0.0 { end } else { 1.0 }
 }
 
 /// Draws a panel.
 pub(super) fn draw(area: &Area<'_>, panel: &Bars) -> Result<(), Failed> {
     let (rows, text) = (panel.bars.len().max(1) as f64, ("sans-serif", TEXT));
-    let ends = panel.bars.iter().filter(|bar| bar.is_known()).map(|bar| bar.length + bar.spread.max(0.0));
-    let most = ends.fold(0.0, f64::max);
-    let axis = 0.0..if most > 0.0 { ROOM * most } else { 1.0 };
+    let pixels = f64::from(area.dim_in_pixel().0) - f64::from(2 * MARGIN + NAMES);
+    let axis = 0.0..end_of_axis(&panel.bars, pixels);
     let mut builder = ChartBuilder::on(area);
-    builder.caption(&panel.title, ("sans-serif", TEXT + 3)).margin(12).x_label_area_size(44).y_label_area_size(NAMES);
+    builder.caption(&panel.title, ("sans-serif", TEXT + 3)).margin(MARGIN).x_label_area_size(44).y_label_area_size(NAMES);
     let mut chart = builder.build_cartesian_2d(axis.clone(), 0.0..rows)?;
     let labels = even(axis);
     let mesh = &mut chart.configure_mesh();
@@ -72,10 +100,10 @@ pub(super) fn draw(area: &Area<'_>, panel: &Bars) -> Result<(), Failed> {
     mesh.x_desc(panel.axis).label_style(text).axis_desc_style(text);
     mesh.light_line_style(BLACK.mix(0.04)).bold_line_style(BLACK.mix(0.12)).draw()?;
     let ids: Vec<&str> = panel.bars.iter().map(|bar| &bar.id[..]).collect();
-    let beside = |side| TextStyle::from(("sans-serif", TEXT - 2)).pos(Pos::new(side, VPos::Center));
+    let beside = |side| TextStyle::from(("sans-serif", SMALL)).pos(Pos::new(side, VPos::Center));
     for ((i, bar), color) in panel.bars.iter().enumerate().zip(colors_of(&ids)) {
         let (low, middle) = (rows - 1.0 - i as f64, rows - 0.5 - i as f64);
-        let name = EmptyElement::at((0.0, middle)) + Text::new(bar.name.clone(), (-8, 0), beside(HPos::Right));
+        let name = EmptyElement::at((0.0, middle)) + Text::new(bar.name.clone(), (-BESIDE, 0), beside(HPos::Right));
         chart.draw_series(std::iter::once(name))?;
         let length = if bar.is_known() { bar.length.max(0.0) } else { 0.0 };
         if bar.is_known() {
@@ -89,7 +117,7 @@ pub(super) fn draw(area: &Area<'_>, panel: &Bars) -> Result<(), Failed> {
             let end = |x| EmptyElement::at((x, middle)) + PathElement::new([(0, -END), (0, END)], BLACK);
             chart.draw_series([from, to].into_iter().map(end))?;
         }
-        let said = EmptyElement::at((length + spread, middle)) + Text::new(bar.said(), (8, 0), beside(HPos::Left));
+        let said = EmptyElement::at((bar.end(), middle)) + Text::new(bar.said(pixels), (BESIDE, 0), beside(HPos::Left));
         chart.draw_series(std::iter::once(said))?;
     }
     Ok(())
@@ -128,5 +156,27 @@ mod tests {
         assert!(svg.contains("Rays &amp; time") && !svg.contains("NaN"));
         let lines = |svg: &str| svg.matches("<polyline").count();
         assert_eq!(lines(&svg), lines(&drawn(exact)) + 3, "a spread is a line with two ends");
+    }
+
+    #[test]
+    fn no_figure_runs_out_of_the_picture_however_long_its_note_is() {
+        let sentence = "the structure would take 12 GiB, which is more than there is, so leave something out or raise the limit";
+        let notes = ["", "a part of the rays", sentence];
+        let bars = notes.map(|note| bar("bvh", 1234.0, 56.7, note)).into_iter().chain([bar("bsp", f64::NAN, 0.0, sentence)]);
+        let panel = Bars { title: "Rays".to_owned(), axis: "rays", bars: bars.collect() };
+        let svg = Drawing::Bars(vec![panel]).svg().expect("drawn");
+        let number = |text: &str, name: &str| -> Option<f64> {
+            text.split(&format!(" {name}=\"")).nth(1)?.split('"').next()?.parse().ok()
+        };
+        let mut figures = 0;
+        for text in svg.split("<text").skip(1).filter(|text| text.contains("text-anchor=\"start\"")) {
+            let (x, height) = number(text, "x").zip(number(text, "font-size")).expect("said");
+            let said = text.split('>').nth(1).and_then(|said| said.split('<').next()).expect("text").trim();
+            let end = x + 0.6 * height * said.chars().count() as f64;
+            assert!(end < f64::from(super::super::SIZE.0), "{said} ends at {end}");
+            figures += 1;
+        }
+        assert_eq!((figures, svg.matches('…').count()), (4, 2), "{svg}");
+        assert!(svg.contains("a part of the rays\n"), "a short one is whole");
     }
 }

@@ -3,6 +3,10 @@
 //! The predictor is one for all kinds of rays: the nodes and tests that the areas of the cells promise a random line that
 //! nothing cuts short, times the costs that [`fit_costs`](super::fit_costs) finds. So random lines are what it is for; of rays
 //! that end early it tells too much.
+//!
+//! What is measured is the wall time that all threads take together, times their number, over the rays: nanoseconds of a thread
+//! while all are at work. Costs are fitted to one thread while the others idle. Where threads share cores, caches or the clock,
+//! or the machine has other work, a ray takes longer beside others than alone, and all marks may lie above the line for that.
 
 #[cfg(feature = "plots")]
 pub mod plot;
@@ -27,7 +31,7 @@ pub struct Point<'a> {
     pub kind: RayKind,
     /// Predicted nanoseconds of a ray: more than nothing.
     pub predicted: f64,
-    /// Measured ones of one thread: more than nothing.
+    /// Measured ones of a thread while all are at work: more than nothing.
     pub measured: f64,
 }
 
@@ -60,13 +64,12 @@ pub fn missing(rows: &[TradeoffRow]) -> Vec<String> {
 
 /// A point, or why there is none.
 fn of(row: &TradeoffRow, kind: RayKind) -> Result<Point<'_>, String> {
-    if let Some(error) = &row.error {
-        return Err(error.clone());
-    }
+    // What went wrong elsewhere in the row is no reason where both figures are there.
+    let unknown = |why: &str| row.error.clone().unwrap_or_else(|| why.to_owned());
     let Some(predicted) = row.predicted_ns else {
-        return Err("no costs could be fitted, as it is too slow or its rays are too much alike.".to_owned());
+        return Err(unknown("no costs could be fitted, as it is too slow or its rays are too much alike."));
     };
-    let Some(measured) = row.ns.get(&kind).copied() else { return Err("it was not measured.".to_owned()) };
+    let Some(measured) = row.ns.get(&kind).copied() else { return Err(unknown("it was not measured.")) };
     let placed = |ns: f64| ns.is_finite() && ns > 0.0;
     if placed(predicted) && placed(measured) {
         Ok(Point { row, kind, predicted, measured })
@@ -142,6 +145,16 @@ mod tests {
         let [low, high] = range(&points).expect("there are some");
         assert!(points.iter().all(|p| [p.predicted, p.measured].iter().all(|ns| low < *ns && *ns < high)));
         assert_eq!(range(&[]), None);
+    }
+
+    #[test]
+    fn an_error_elsewhere_in_a_row_takes_no_point_of_it() {
+        let error = || Some("The tree of tests of boxes does not fit.".to_owned());
+        let rows = [TradeoffRow { error: error(), ..row("bvh", Some(150.0), &[(RayKind::Lines, 100.0)]) }];
+        assert_eq!(points(&rows).iter().map(|point| point.kind).collect::<Vec<_>>(), [RayKind::Lines]);
+        let missing = missing(&rows);
+        assert_eq!(missing.len(), KINDS.len() - 1, "{missing:?}");
+        assert!(missing.iter().all(|why| why.contains("does not fit")), "{missing:?}");
     }
 
     #[test]

@@ -72,8 +72,8 @@ pub fn all(state: &State) -> Vec<Action> {
     let mut list = List { group: "File", all: Vec::new() };
     file::add(&mut list, state);
     list.group = "Edit";
-    list.add("Undo", Command::Undo).key(UNDO).if_possible(state.choices.has_back());
-    list.add("Redo", Command::Redo).key(REDO).if_possible(state.choices.has_forward());
+    list.add("Undo", Command::Undo).key(UNDO).if_possible(state.can_undo());
+    list.add("Redo", Command::Redo).key(REDO).if_possible(state.can_redo());
     let groups: [(&'static str, Adds); 9] = [
         ("View", view::add),
         ("Boxes", boxes::add),

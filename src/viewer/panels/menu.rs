@@ -176,10 +176,10 @@ fn item_if(ui: &mut Ui, possible: bool, text: &str, shortcut: &KeyboardShortcut)
 }
 
 fn edit(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    if item_if(ui, state.choices.has_back(), "Undo", &UNDO) {
+    if item_if(ui, state.can_undo(), "Undo", &UNDO) {
         commands.push(Command::Undo);
     }
-    if item_if(ui, state.choices.has_forward(), "Redo", &REDO) {
+    if item_if(ui, state.can_redo(), "Redo", &REDO) {
         commands.push(Command::Redo);
     }
 }

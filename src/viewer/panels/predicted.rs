@@ -24,8 +24,10 @@ const PREDICTOR: &str = "Predicted is one time for all kinds of rays: the nodes 
                          expected to meet, by the areas of the cells, times what a node and a test cost, and what any ray does. \
                          These costs are fitted by least squares, none below 0, to blocks of random lines, primary, shadow and \
                          diffuse rays of this view that were timed and counted in the same structure. Nothing cuts a random line \
-                         short: rays that end early take less. Marks on the line are predicted right. All variants that were \
-                         measured are drawn, brute force too.";
+                         short: rays that end early take less. Measured is the time of all threads together, times their number, \
+                         over the rays; costs are fitted to one thread while the others idle. Where threads share cores, or the \
+                         machine has other work, all marks may lie above the line for that alone. Marks on the line are \
+                         predicted right. All variants that were measured are drawn, brute force too.";
 /// Marks told under the pointer, at most.
 const TOLD: usize = 6;
 

@@ -10,7 +10,8 @@ use crate::viewer::state::State;
 pub fn timings(state: &State, title: &Titles<'_>) -> Bars {
     let mut bars = Vec::new();
     for (entry, row) in state.timings.sorted(&state.terms_of_timings) {
-        let why = row.failed.as_deref().unwrap_or("not measured");
+        // The reason is a sentence, which the table has room for.
+        let why = if row.failed.is_some() { "not built" } else { "not measured" };
         bars.push(rate(entry.id, entry.short, row.timing.as_ref(), why));
     }
     let raster = state.timings.raster.as_ref().map(crate::lab::RasterRow::timing);
@@ -23,7 +24,7 @@ fn rate(id: &str, name: &str, timing: Option<&Timing>, why: &str) -> Bar {
     let (id, name) = (id.to_owned(), name.to_owned());
     match timing {
         Some(t) => {
-            let note = if t.capped.is_some() { "(of a part of the rays)" } else { "" };
+            let note = if t.capped.is_some() { "a part of the rays" } else { "" };
             Bar { id, name, length: t.mrays_per_sec, spread: t.mrays_spread(), note: note.to_owned() }
         }
         None => Bar { id, name, length: f64::NAN, spread: 0.0, note: why.to_owned() },

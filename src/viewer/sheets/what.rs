@@ -1,6 +1,7 @@
 //! What can be taken away of the window: every table, and which of them are plots, too.
 
 use super::curves;
+use crate::lab::prediction;
 use crate::viewer::panels::heat;
 use crate::viewer::state::State;
 use crate::viewer::tradeoffs::Plot;
@@ -100,8 +101,13 @@ impl What {
 
     /// Whether there is anything to plot.
     pub fn is_plotted(self, state: &State) -> bool {
-        let measured = || state.timings.fastest().is_some() || state.timings.raster.is_some();
-        self.has_plot() && self.is_there(state) && (self != Self::Timings || measured())
+        let drawn = || match self {
+            Self::Timings => state.timings.fastest().is_some() || state.timings.raster.is_some(),
+            // Rows may have no point.
+            Self::Prediction => !prediction::points(&state.tradeoffs.rows).is_empty(),
+            _ => true,
+        };
+        self.has_plot() && self.is_there(state) && drawn()
     }
 
     /// Whether there is anything of it.
@@ -139,7 +145,44 @@ impl What {
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+    use std::sync::Arc;
+    use std::sync::mpsc::{Receiver, channel};
+
     use super::*;
+    use crate::lab::RayKind;
+    use crate::lab::tradeoffs::TradeoffRow;
+    use crate::task::{Budget, Pool};
+    use crate::viewer::dialogs::FileDialog;
+    use crate::viewer::graphics::Graphics;
+    use crate::viewer::settings::Settings;
+    use crate::viewer::workers::Shared;
+
+    /// Dialogs that are never answered.
+    struct Unanswered;
+
+    impl FileDialog for Unanswered {
+        fn pick(&self, _: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+            channel().1
+        }
+
+        fn save(&self, _: &str, wake: Arc<dyn Fn() + Send + Sync>) -> Receiver<Option<PathBuf>> {
+            self.pick(wake)
+        }
+    }
+
+    #[test]
+    fn predictions_are_plotted_only_where_there_is_a_point() {
+        let shared = Shared::new(Pool::new("work", 1), Budget::unlimited(), Arc::new(|| {}));
+        let mut state = State::new(Settings::default(), shared, Box::new(Unanswered), Graphics::of(None)).expect("threads");
+        let is = |state: &State| (What::Prediction.is_there(state), What::Prediction.is_plotted(state));
+        assert_eq!(is(&state), (false, false));
+        state.tradeoffs.rows = vec![TradeoffRow { error: Some("It does not fit.".to_owned()), ..TradeoffRow::default() }];
+        assert_eq!(is(&state), (true, false), "why there is none can be saved, as a table");
+        let ns = [(RayKind::Primary, 100.0)].into();
+        state.tradeoffs.rows.push(TradeoffRow { predicted_ns: Some(150.0), ns, ..TradeoffRow::default() });
+        assert_eq!(is(&state), (true, true));
+    }
 
     #[test]
     fn names_make_names_of_files_and_no_two_are_alike() {

@@ -100,12 +100,13 @@ impl State {
 
     /// What was made or is on its way, for a file; hidden triangles are numbered elsewhere.
     pub(super) fn to_made(&self) -> Made {
-        let awaited = self.again.structure.as_ref();
+        // What is to be made of another structure than the chosen one is not wanted any more.
+        let awaited = self.again.structure.as_ref().filter(|of| of.key == self.wanted_key());
         // What is made is of the structure that is shown, while another one may be on its way.
         let stays = self.building.is_none();
         let volumes = self.fitting().is_some() || self.fits.running.is_some();
         let tiles = self.shows_tiles() || self.tiles.running.is_some();
-        let drawn = awaited.and_then(|of| of.drawn).or(self.fits.drawn);
+        let drawn = awaited.and_then(|of| of.drawn).or_else(|| self.fits.drawn.filter(|_| stays));
         Made {
             rays: self.rays_file(),
             film: awaited.and_then(|of| of.film).or_else(|| self.filming.place().filter(|_| stays)),
@@ -154,19 +155,45 @@ impl State {
     fn film_again(&mut self, of: &mut OfStructure) {
         let Some(at) = of.film else { return };
         let made = self.filming.film.is_some() || self.filming.making.is_some();
-        let listed = self.tree.outline.as_ref();
-        let never = !self.has_film() || self.tree.failed.is_some() || listed.is_some_and(|outline| outline.is_cut());
-        if made || never {
+        if made {
             of.film = None;
+        } else if let Some(why) = self.no_film() {
+            of.film = None;
+            self.not_made_again("make the film", why);
         } else if self.can_make_film() {
             of.film = None;
             self.begin_film(at);
         }
     }
 
+    /// Why there can be no film of the shown structure, in words for the user.
+    fn no_film(&self) -> Option<&'static str> {
+        if !self.has_film() {
+            Some("this structure has none")
+        } else if self.tree.failed.is_some() {
+            Some("the cells of the structure could not be listed")
+        } else if self.tree.outline.as_ref().is_some_and(|outline| outline.is_cut()) {
+            Some("not all cells of the structure could be listed: they do not fit")
+        } else {
+            None
+        }
+    }
+
+    /// Tells what can't be done that was done when a file was saved, and why.
+    fn not_made_again(&mut self, what: &str, why: &str) {
+        self.also_fail(&format!("Can't {what} again: {why}. The rest of the workspace is open."));
+    }
+
     fn fit_again(&mut self, path: &[CellId]) {
-        let there = self.picked.as_ref().is_some_and(|picked| picked.ids() == path);
-        if there && self.fitting().is_none() && self.fits.running.is_none() {
+        if self.fitting().is_some() || self.fits.running.is_some() {
+            return;
+        }
+        let there = self.picked.as_ref().is_some_and(|picked| picked.selected().is_some() && picked.ids() == path);
+        if !there {
+            self.not_made_again("compare bounding volumes", "the node that they were around is not selected");
+        } else if self.fittable().is_none() {
+            self.not_made_again("compare bounding volumes", "the node is of the upper level, whose triangles are in many spaces");
+        } else {
             self.fit_volumes();
         }
     }

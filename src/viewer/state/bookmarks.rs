@@ -7,7 +7,6 @@ use super::State;
 use crate::accel::Visibility;
 use crate::scene::Camera;
 use crate::viewer::history::{Choices, Kind};
-use crate::viewer::pick::Picked;
 
 /// A view that is kept.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -32,10 +31,9 @@ impl Bookmark {
     }
 
     /// Takes in its set of hidden triangles, if that is among those of a file that were awaited.
-    pub(super) fn take_hidden(&mut self, sets: &[Arc<Visibility>]) {
-        if let Some(set) = self.hidden.take() {
-            self.choices.visible = sets.get(set).cloned();
-        }
+    pub(super) fn take_hidden(&mut self, sets: &[Option<Arc<Visibility>>]) {
+        self.choices.hidden = self.hidden.take();
+        self.choices.take_hidden(sets);
     }
 }
 
@@ -49,10 +47,7 @@ impl State {
         let used = |n: usize| self.bookmarks.iter().any(|bookmark| bookmark.name.starts_with(&format!("view {n} ")));
         let number = (1..).find(|n| !used(*n)).unwrap_or(0);
         let name = format!("view {number} ({})", self.settings.entry().name);
-        // A selection is of the structure that is shown, while another one may be on its way.
-        let selected = self.picked.as_ref().filter(|_| self.building.is_none());
-        let ids = selected.map(Picked::ids).unwrap_or_default();
-        let selected = ids.iter().map(|id| (id.instance, id.node)).collect();
+        let selected = self.selected_of_chosen().iter().map(|id| (id.instance, id.node)).collect();
         let (camera, choices) = (self.camera, Choices::of(&self.settings, None));
         self.bookmarks.push(Bookmark { name, camera, choices, selected, hidden: self.hidden_later() });
     }
@@ -60,7 +55,7 @@ impl State {
     /// Goes back to one; that can be taken back like any move and choice.
     pub(super) fn go_to_bookmark(&mut self, at: usize) {
         let Some(Bookmark { camera, choices, selected, hidden, .. }) = self.bookmarks.get(at).cloned() else { return };
-        self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
+        self.choices.leave(self.present_choices(), Kind::Single, Instant::now());
         self.look(camera, Kind::Single);
         self.restore(Some(choices.beside(&self.settings)));
         self.hide_later(hidden);

@@ -13,7 +13,7 @@ impl State {
     /// Does one thing that a panel asked for. Commands that concern the window itself are the app's.
     pub fn carry_out(&mut self, command: Command) {
         if let Some(kind) = Choices::changed_by(&command) {
-            self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), kind, Instant::now());
+            self.choices.leave(self.present_choices(), kind, Instant::now());
         }
         match command {
             Command::Open(model) => self.open(model),
@@ -59,14 +59,8 @@ impl State {
             Command::CameraForward => self.camera = self.cameras.forward(self.camera).unwrap_or(self.camera),
             // What is timed shall not be disturbed by a build.
             Command::Undo | Command::Redo | Command::Bookmark(_) if self.is_measuring() => {}
-            Command::Undo => {
-                let before = self.choices.back(Choices::of(&self.settings, self.picked.as_ref()));
-                self.restore(before);
-            }
-            Command::Redo => {
-                let after = self.choices.forward(Choices::of(&self.settings, self.picked.as_ref()));
-                self.restore(after);
-            }
+            Command::Undo => self.undo(),
+            Command::Redo => self.redo(),
             Command::Pick(at) => self.pick(at),
             Command::SelectLevel(level) => {
                 let picked = self.picked.clone().map(|p| Picked { level: level.min(p.path.len().saturating_sub(1)), ..p });

@@ -9,7 +9,7 @@ use crate::accel::outline::OutlineError;
 use crate::geometry::{Aabb, Axis};
 use crate::job::Outcome;
 use crate::viewer::gpu::{BoxInstance, Overlay};
-use crate::viewer::history::{Choices, Kind};
+use crate::viewer::history::Kind;
 use crate::viewer::overlay::{placed, plane_in};
 use crate::viewer::pick::Picked;
 use crate::viewer::settings::Workspace;
@@ -67,9 +67,9 @@ impl State {
             return;
         }
         let job = workers::select(&self.shared, Arc::clone(&shown.accel), Arc::clone(outline), row);
-        self.tree.selecting = job.ok();
         // A selection of a bookmark that was on its way is overtaken.
-        (self.tree.restoring, self.tree.retried) = (false, None);
+        self.select_no_more();
+        self.tree.selecting = job.ok();
         self.tree.walking = walking;
         self.picking = None;
         self.tree.select(Some(row));
@@ -83,19 +83,27 @@ impl State {
             Outcome::Done(Ok(picked)) => {
                 self.tree.selecting = None;
                 // What belongs to a bookmark or a file is no step of its own.
-                if !std::mem::take(&mut self.tree.restoring) && self.picked.as_ref() != Some(&picked) {
+                let restored = self.awaited.take_if(|_| self.tree.restoring);
+                if restored.is_none() && self.picked.as_ref() != Some(&picked) {
                     let kind = if self.tree.walking { Kind::Walk } else { Kind::Single };
-                    self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), kind, Instant::now());
+                    self.choices.leave(self.present_choices(), kind, Instant::now());
                 }
-                let retried = self.tree.retried.take();
                 self.select(Some(picked));
-                if retried.is_some() {
-                    self.try_plane(retried);
+                if let Some(tried) = restored.and_then(|restored| restored.tried) {
+                    self.try_plane(Some(tried));
                 }
             }
             Outcome::Done(Err(_)) | Outcome::Died => self.follow_selection(),
         }
+        self.select_no_more();
+    }
+
+    /// Gives up the cell that is on its way, if any.
+    pub(super) fn select_no_more(&mut self) {
         self.tree.selecting = None;
+        if std::mem::take(&mut self.tree.restoring) {
+            self.awaited = None;
+        }
     }
 
     /// The row of what was selected otherwise.

@@ -9,7 +9,7 @@ use crate::job::Outcome;
 use crate::scene::texture::Detail;
 use crate::scene::{CameraSpec, Material};
 use crate::viewer::brute::Brute;
-use crate::viewer::history::{Choices, History, Kind};
+use crate::viewer::history::{History, Kind};
 use crate::viewer::kept::Built;
 use crate::viewer::model::{self, Model};
 use crate::viewer::pick::Picked;
@@ -223,7 +223,7 @@ impl State {
             Outcome::Running => return,
             Outcome::Done(Ok(picked)) => {
                 if picked != self.picked {
-                    self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
+                    self.choices.leave(self.present_choices(), Kind::Single, Instant::now());
                 }
                 self.select(picked);
             }

@@ -7,7 +7,7 @@ use super::State;
 use crate::accel::Visibility;
 use crate::accel::visibility::{Change, VisibilityError};
 use crate::job::{Job, Outcome};
-use crate::viewer::history::{Choices, Kind};
+use crate::viewer::history::Kind;
 use crate::viewer::pick::Picked;
 
 /// Triangles that are sorted out.
@@ -48,7 +48,7 @@ impl State {
         match job.poll() {
             Outcome::Running => return,
             Outcome::Done(Ok(visible)) => {
-                self.choices.leave(Choices::of(&self.settings, self.picked.as_ref()), Kind::Single, Instant::now());
+                self.choices.leave(self.present_choices(), Kind::Single, Instant::now());
                 self.settings.visible = Some(Arc::new(visible));
             }
             Outcome::Done(Err(VisibilityError::Cancelled(_))) => {}

@@ -32,6 +32,7 @@ mod tests;
 mod tiling;
 mod touring;
 mod trading;
+mod undoing;
 mod visiting;
 mod volumes;
 
@@ -430,7 +431,7 @@ impl State {
 
     fn pick(&mut self, at: Vec2) {
         let ray = self.ray_at(at);
-        (self.tree.selecting, self.tree.restoring) = (None, false);
+        self.select_no_more();
         self.note_click(at);
         if self.settings.workspace == Workspace::Ray {
             self.follow_anew(ray);
@@ -444,21 +445,6 @@ impl State {
     fn look(&mut self, camera: Camera, kind: Kind) {
         self.cameras.leave(self.camera, kind, Instant::now());
         self.camera = camera;
-    }
-
-    /// Brings choices back that were left.
-    fn restore(&mut self, choices: Option<Choices>) {
-        let Some(choices) = choices else { return };
-        (self.picking, self.tree.selecting, self.hiding) = (None, None, None);
-        self.hide_later(None);
-        self.change_panes(|state| choices.restore(&mut state.settings));
-        self.chosen_depths = (self.settings.overlay.from_depth, self.settings.overlay.depth);
-        self.choose();
-        // A selection belongs to the structure that it was made in.
-        if self.shown.as_ref().is_some_and(|b| b.key == self.wanted_key()) {
-            self.select(choices.picked);
-            self.clamp_depth();
-        }
     }
 
     /// The selected box is drawn with the others, so they are collected anew.

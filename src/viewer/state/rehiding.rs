@@ -9,7 +9,7 @@ use crate::accel::Visibility;
 use crate::accel::visibility::{VisibilityError, Written};
 use crate::job::{Job, Outcome};
 use crate::scene::Geometry;
-use crate::task::{Cancel, Cancelled};
+use crate::task::{Budget, Cancel, Cancelled};
 use crate::viewer::workspace_file::WorkspaceFile;
 
 /// Sets of a file that are still to be hidden.
@@ -18,7 +18,18 @@ pub(super) struct Rehiding {
     /// Which of them is that of the window.
     now: Option<usize>,
     /// All of them, on their way.
-    job: Option<Job<Result<Vec<Arc<Visibility>>, VisibilityError>>>,
+    job: Option<Job<Vec<Read>>>,
+}
+
+/// One of them as it was read: what one lacks is nothing to the others.
+type Read = Result<Arc<Visibility>, VisibilityError>;
+
+/// Reads sets, one of them first: where memory runs out, it has its share.
+fn read_all(sets: &[Written], first: Option<usize>, geometry: &Arc<Geometry>, budget: &Budget, cancel: &Cancel) -> Vec<Read> {
+    let read = |set: &Written| Visibility::read(set, geometry, budget, cancel).map(Arc::new);
+    let first = first.and_then(|at| Some((at, read(sets.get(at)?))));
+    let of = |(i, set)| first.as_ref().filter(|(at, _)| *at == i).map_or_else(|| read(set), |(_, set)| set.clone());
+    sets.iter().enumerate().map(of).collect()
 }
 
 /// Sets that are to be written down.
@@ -90,38 +101,74 @@ impl State {
     pub(super) fn hide_no_more(&mut self) {
         (self.hiding, self.rehiding) = (None, None);
         self.bookmarks.iter_mut().for_each(|bookmark| bookmark.hidden = None);
+        self.choices.all_mut().for_each(|choices| choices.hidden = None);
     }
 
     pub(super) fn advance_rehiding(&mut self) {
         let (Some(model), Some(rehiding)) = (&self.model, &mut self.rehiding) else { return };
         let Some(job) = &rehiding.job else {
             let (sets, geometry) = (Arc::clone(&rehiding.sets), Arc::clone(&model.geometry));
-            let budget = self.shared.budget.clone();
-            let job = Job::spawn("hide", self.shared.waker(), move |cancel, _| {
-                sets.iter().map(|set| Visibility::read(set, &geometry, &budget, cancel).map(Arc::new)).collect()
-            });
-            match job {
+            let (budget, now) = (self.shared.budget.clone(), rehiding.now);
+            let read = move |cancel: &Cancel| read_all(&sets, now, &geometry, &budget, cancel);
+            match Job::spawn("hide", self.shared.waker(), move |cancel, _| read(cancel)) {
                 Ok(job) => rehiding.job = Some(job),
-                Err(e) => self.not_hidden_again(&e),
+                Err(e) => {
+                    self.hide_no_more();
+                    self.not_hidden_again("", &e);
+                }
             }
             return;
         };
         match job.poll() {
             Outcome::Running => return,
-            Outcome::Done(Ok(sets)) => {
-                self.settings.visible = rehiding.now.and_then(|now| sets.get(now)).cloned().or(self.settings.visible.take());
-                self.bookmarks.iter_mut().for_each(|bookmark| bookmark.take_hidden(&sets));
-            }
-            Outcome::Done(Err(VisibilityError::Cancelled(_))) => {}
-            Outcome::Done(Err(why)) => self.not_hidden_again(&why),
-            Outcome::Died => self.not_hidden_again(&"sorting them out failed. Please report this model"),
+            Outcome::Done(read) => self.hide_again(read),
+            Outcome::Died => self.not_hidden_again("", &"sorting them out failed. Please report this model"),
         }
         self.hide_no_more();
     }
 
-    fn not_hidden_again(&mut self, why: &dyn std::fmt::Display) {
-        self.hide_no_more();
+    /// Hides the sets that could be read where they belong: in the window, in views that were kept, and in choices that were left
+    /// since the model is open; tells about the others.
+    fn hide_again(&mut self, read: Vec<Read>) {
+        let failed: Vec<VisibilityError> = read.iter().filter_map(|set| set.as_ref().err().copied()).collect();
+        let (all, sets) = (read.len(), read.into_iter().map(Result::ok).collect::<Vec<_>>());
+        let now = self.hidden_later().and_then(|now| sets.get(now).cloned().flatten());
+        self.settings.visible = now.or(self.settings.visible.take());
+        self.bookmarks.iter_mut().for_each(|bookmark| bookmark.take_hidden(&sets));
+        self.choices.all_mut().for_each(|choices| choices.take_hidden(&sets));
+        if let Some(why) = failed.first().filter(|why| !matches!(why, VisibilityError::Cancelled(_))) {
+            let part = if failed.len() < all { format!(", {} of {all} sets", failed.len()) } else { String::new() };
+            self.not_hidden_again(&part, why);
+        }
+    }
+
+    /// Tells where triangles are not hidden again, and why.
+    fn not_hidden_again(&mut self, part: &str, why: &dyn std::fmt::Display) {
         let why = sentence(&why.to_string());
-        self.also_fail(&format!("Can't hide the triangles that were hidden: {why} The rest of the workspace is open."));
+        self.also_fail(&format!("Can't hide the triangles that were hidden{part}: {why} The rest of the workspace is open."));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{LoadCx, open};
+
+    #[test]
+    fn where_there_is_room_for_one_set_it_is_that_of_the_window() {
+        let cx = LoadCx::unattended();
+        let scene = open("builtin:teapot?triangles=1000", &cx).expect("built in");
+        let geometry = Arc::new(Geometry::new(&scene, &cx).expect("small"));
+        let of = geometry.triangle_count();
+        let set = |hidden: usize| -> Written {
+            serde_json::from_str(&format!(r#"{{"of": {of}, "runs": "0 {hidden} {}"}}"#, of - hidden)).expect("as it is written")
+        };
+        let (sets, cancel) = ([set(1), set(2), set(3)], Cancel::new());
+        // A bit for each triangle, and a little.
+        let budget = Budget::new(of as u64 / 8 + 40);
+        let counts = |read: Vec<Read>| read.iter().map(|set| set.as_ref().ok().map(|set| set.count())).collect::<Vec<_>>();
+        assert_eq!(counts(read_all(&sets, Some(1), &geometry, &budget, &cancel)), [None, Some(2), None]);
+        assert_eq!(counts(read_all(&sets, None, &geometry, &budget, &cancel)), [Some(1), None, None]);
+        assert_eq!(counts(read_all(&sets, Some(7), &geometry, &Budget::unlimited(), &cancel)), [Some(1), Some(2), Some(3)]);
     }
 }

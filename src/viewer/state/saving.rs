@@ -30,14 +30,14 @@ pub struct Saving {
     read: Option<(WorkspaceFile, Instances)>,
 }
 
-/// A cell that is to be selected.
+/// A cell that is to be selected: awaited until it is.
 pub struct Awaited {
     /// The structure that it is of.
     key: Key,
     /// The cells from the root to it.
     path: Vec<CellId>,
     /// A plane to try in it.
-    tried: Option<(Axis, f64)>,
+    pub(super) tried: Option<(Axis, f64)>,
 }
 
 impl Saving {
@@ -63,21 +63,31 @@ impl State {
     /// What would be saved now.
     fn to_file(&self) -> Option<WorkspaceFile> {
         let model = self.model.as_ref()?;
-        // A selection is of the structure that is shown, while another one may be on its way.
-        let selected = self.picked.as_ref().filter(|_| self.building.is_none()).map(Picked::ids);
-        let awaited = self.awaited.as_ref().filter(|awaited| awaited.key == self.wanted_key());
-        let selected = awaited.map(|awaited| awaited.path.clone()).or(selected).unwrap_or_default();
         let mut file = WorkspaceFile::new(&model.scene.name, &self.settings, self.camera, self.instances);
-        file.selected = selected.iter().map(|id| (id.instance, id.node)).collect();
+        file.selected = self.selected_of_chosen().iter().map(|id| (id.instance, id.node)).collect();
         file.ray = self.rays.asked.as_ref().map(to_text);
         file.ray_kind = self.rays.kind.id().to_owned();
         file.step = self.rays.place();
-        let tried = awaited.map_or(self.tree.tried, |awaited| awaited.tried).filter(|_| !file.selected.is_empty());
+        let tried =
+            self.awaited_of_chosen().map_or(self.tree.tried, |awaited| awaited.tried).filter(|_| !file.selected.is_empty());
         file.tried = tried.map(|(axis, place)| (axis.index(), place));
         file.beside = self.rays.beside.iter().map(|id| (*id).to_owned()).collect();
         file.bookmarks.clone_from(&self.bookmarks);
         (file.look, file.made) = (Some(self.to_look()), self.to_made());
         Some(file)
+    }
+
+    /// What is still to be selected of the chosen structure.
+    fn awaited_of_chosen(&self) -> Option<&Awaited> {
+        self.awaited.as_ref().filter(|awaited| awaited.key == self.wanted_key())
+    }
+
+    /// The cells of the chosen structure from the root to that which is selected, or still to be.
+    pub(super) fn selected_of_chosen(&self) -> Vec<CellId> {
+        // A selection is of the structure that is shown, while another one may be on its way.
+        let selected = || self.picked.as_ref().filter(|_| self.building.is_none()).map(Picked::ids);
+        let awaited = self.awaited_of_chosen().map(|awaited| awaited.path.clone());
+        awaited.or_else(selected).unwrap_or_default()
     }
 
     /// Starts reading a file.
@@ -158,19 +168,23 @@ impl State {
 
     /// Selects what was saved, once its structure is there.
     fn await_selection(&mut self) {
-        if self.building.is_some() || self.loading.is_some() {
+        let on_its_way = self.tree.restoring && self.tree.selecting.is_some();
+        if self.building.is_some() || self.loading.is_some() || on_its_way {
             return;
         }
-        // Where the build came to nothing, or another structure was chosen, nobody waits any more.
-        let Some(Awaited { key, path, tried }) = self.awaited.take() else { return };
-        if let Some(shown) = self.shown.as_ref().filter(|shown| shown.key == key && !path.is_empty()) {
-            (self.tree.restoring, self.tree.retried) = (true, tried);
-            self.tree.selecting = workers::select_path(&self.shared, Arc::clone(&shown.accel), path).ok();
+        let Some(Awaited { key, path, .. }) = &self.awaited else { return };
+        let shown = self.shown.as_ref().filter(|shown| shown.key == *key && !path.is_empty());
+        let job = shown.and_then(|shown| workers::select_path(&self.shared, Arc::clone(&shown.accel), path.clone()).ok());
+        match job {
+            Some(job) => (self.tree.restoring, self.tree.selecting) = (true, Some(job)),
+            // Where the build came to nothing, or another structure was chosen, nobody waits any more.
+            None => self.awaited = None,
         }
     }
 
     /// Selects a cell of the chosen structure, by the cells from the root to it, once that is there, and tries a plane in it.
     pub(super) fn await_cell(&mut self, path: &[(u32, u32)], tried: Option<(Axis, f64)>) {
+        self.select_no_more();
         let path = path.iter().map(|(instance, node)| CellId { instance: *instance, node: *node }).collect();
         self.awaited = Some(Awaited { key: self.wanted_key(), path, tried });
     }
