@@ -183,6 +183,7 @@ fn drawing(state: &State, which: usize, shown: &Shown<'_>) -> Option<Drawing> {
         view: View::new(&picture.camera, &space, size[0] as f32 / size[1] as f32).within(section),
         space,
         size,
+        begin: state.boxes_begin(),
         hidden_lines: state.settings.overlay.hidden_lines,
     })
 }

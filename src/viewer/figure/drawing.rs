@@ -39,6 +39,8 @@ pub struct Drawing {
     pub space: Space,
     /// Columns and rows.
     pub size: [u32; 2],
+    /// From where on boxes are drawn, as a part of the width.
+    pub begin: f32,
     /// Whether what is behind a surface is drawn.
     pub hidden_lines: bool,
 }
@@ -57,7 +59,13 @@ impl Drawing {
              <g fill=\"none\" stroke-linecap=\"round\">\n"
         );
         if let Some(overlay) = &self.overlay {
+            // What is within is cut at its sides.
+            let begin = (self.begin * width as f32).round();
+            let rest = width as f32 - begin;
+            let _ =
+                writeln!(out, "<svg x=\"{begin}\" width=\"{rest}\" height=\"{height}\" viewBox=\"{begin} 0 {rest} {height}\">");
             self.boxes(overlay, out, cancel)?;
+            out.push_str("</svg>\n");
         }
         self.rays(out);
         out.push_str("</g>\n");

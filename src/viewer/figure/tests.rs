@@ -39,6 +39,7 @@ fn drawing() -> Drawing {
         view: View::new(&camera, &space, 2.0),
         space,
         size,
+        begin: 0.0,
         hidden_lines: true,
     }
 }
@@ -197,6 +198,13 @@ fn what_lies_over_each_compared_picture_stays_in_its_place() {
     let two = figure(vec![crossed(COLORS[0]), crossed(COLORS[1])], Layout::of(Arrange::Two, Vec::new()));
     let [red, green, _] = colours_along(&two, 10);
     assert_eq!((inner(&red), inner(&green)), ([0, 39], [48, 87]), "and none in the gap");
+}
+
+#[test]
+fn boxes_begin_where_they_do_in_the_window() {
+    let half = Drawing { begin: 0.5, ..crossed([255, 0, 0]).expect("one") };
+    let [red, ..] = colours_along(&figure(vec![Some(half)], Layout::Alone), 10);
+    assert_eq!(red, (20..40).collect::<Vec<u32>>());
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_
         background: palette.background.to_array(),
         base,
         overlay,
-        begin: begin(state),
+        begin: state.boxes_begin(),
         hidden_lines: state.settings.overlay.hidden_lines,
     };
     let Place { view: rect, .. } = places[0];
@@ -128,11 +128,6 @@ fn paint(ui: &Ui, rect: Rect, places: &[Place], state: &State, (size_px, pixels_
     if state.picture.is_none() && there < all {
         ui.ctx().request_repaint();
     }
-}
-
-/// From where on boxes are drawn, as a part of the view's width: over all of compared pictures.
-fn begin(state: &State) -> f32 {
-    if state.is_comparing() { 0.0 } else { state.settings.overlay.begin.min(99) as f32 / 100.0 }
 }
 
 /// Draws the pictures of other structures, each with its own boxes.

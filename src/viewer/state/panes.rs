@@ -134,6 +134,11 @@ impl State {
         self.offers_panes() && !self.settings.panes.on_screen().is_empty()
     }
 
+    /// From where on boxes are drawn, as a part of the view's width: over all of compared pictures.
+    pub fn boxes_begin(&self) -> f32 {
+        if self.is_comparing() { 0.0 } else { self.settings.overlay.begin.min(99) as f32 / 100.0 }
+    }
+
     /// Whether pictures can stand beside the first.
     pub fn offers_panes(&self) -> bool {
         self.settings.workspace == Workspace::Compare && !self.tiles.shown
