@@ -354,6 +354,7 @@ impl eframe::App for App {
         self.panels = std::iter::once(here(menu.response.rect)).chain(inner).chain([here(status.response.rect)]).collect();
         panels::terms::show(ui, &self.state, &mut self.commands);
         panels::help::show(ui, &self.state, &mut self.commands);
+        panels::preferences::show(ui, &self.state, &mut self.commands);
         panels::path::show(ui, &self.state, &mut self.commands);
         panels::palette::show(ui, &self.state, &mut self.commands);
         panels::focus::show(ui);

@@ -218,6 +218,8 @@ pub enum Command {
     Scale(f32),
     /// Show, or hide, the palette of all commands.
     Palette(bool),
+    /// Show, or hide, the page of settings.
+    Preferences(bool),
     /// Show, or hide, the page of keys.
     Help(bool),
     /// Show, or hide, the page of terms.

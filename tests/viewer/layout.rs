@@ -269,6 +269,12 @@ fn pages_fit_small_windows() {
             wrong.push(format!("{}: the page of keys is too large: {page}", case.name));
         }
         w.key(Modifiers::NONE, egui::Key::Escape);
+        w.key(Modifiers::COMMAND, egui::Key::Comma);
+        w.step();
+        let page = w.harness.get_by_role_and_label(egui::Role::Window, "Settings").rect();
+        if !w.harness.ctx.content_rect().contains_rect(page) {
+            wrong.push(format!("{}: the page of settings is too large: {page}", case.name));
+        }
     }
     report(wrong);
 }

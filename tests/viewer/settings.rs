@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use boxwood::render::Mode;
 use boxwood::viewer::settings::{Navigation, ThemeChoice};
-use eframe::egui::Role;
+use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable;
 
 use crate::window::{Setup, Window};
@@ -54,6 +54,31 @@ fn settings_come_back_the_next_day() {
     let w = Window::with_storage(Setup::default(), drawer).settled();
     assert_eq!(w.state().settings, saved);
     assert_eq!(w.shown(), Some("kdtree"));
+}
+
+#[test]
+fn the_page_of_settings_has_them_all() {
+    let mut w = Window::lecture();
+    w.key(Modifiers::COMMAND, Key::Comma);
+    w.step();
+    assert!(w.has(Role::Window, "Settings"));
+    w.click(Role::RadioButton, "Dark");
+    w.click(Role::RadioButton, "Blender: middle orbits, Shift+middle pans");
+    w.click(Role::RadioButton, "1.00\u{2009}GiB");
+    w.click(Role::RadioButton, "256");
+    w.button("Larger");
+    w.step();
+    let s = &w.state().settings;
+    assert_eq!((s.theme, s.navigation, s.memory_mib), (ThemeChoice::Dark, Navigation::Blender, Some(1 << 10)));
+    assert!(s.max_samples == 256 && s.scale > 1.0);
+    assert!(w.harness.unnamed_widgets().is_empty());
+    w.key(Modifiers::NONE, Key::Escape);
+    w.step();
+    assert!(!w.has(Role::Window, "Settings"));
+    w.button("Edit");
+    w.button_that_contains("Settings…");
+    w.step();
+    assert!(w.has(Role::Window, "Settings"));
 }
 
 #[test]

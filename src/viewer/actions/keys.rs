@@ -46,6 +46,8 @@ pub(super) const NEXT_PANEL: KeyboardShortcut = with(Modifiers::NONE, Key::F6);
 pub(super) const PANEL_BEFORE: KeyboardShortcut = with(Modifiers::SHIFT, Key::F6);
 /// Opens the palette.
 pub const PALETTE: KeyboardShortcut = with(Modifiers::COMMAND, Key::P);
+/// Opens the page of settings.
+pub const PREFERENCES: KeyboardShortcut = with(Modifiers::COMMAND, Key::Comma);
 /// For an audience.
 pub const PRESENT: KeyboardShortcut = with(Modifiers::NONE, Key::F10);
 /// Shows the triangles of the selected cell alone.

@@ -1,12 +1,12 @@
 //! The window itself.
 
 use super::{
-    FULL_SCREEN, HELP, LARGER, LARGER_UNSHIFTED, List, NEXT_PANEL, PALETTE, PANEL_BEFORE, PRESENT, SAME_SIZE, SMALLER, key_of,
-    scaled,
+    FULL_SCREEN, HELP, LARGER, LARGER_UNSHIFTED, List, NEXT_PANEL, PALETTE, PANEL_BEFORE, PREFERENCES, PRESENT, SAME_SIZE,
+    SMALLER, key_of, scaled,
 };
 use crate::viewer::command::Command;
 use crate::viewer::format;
-use crate::viewer::panels::menu::memory_sizes;
+use crate::viewer::panels::preferences::memory_sizes;
 use crate::viewer::settings::{Navigation, ThemeChoice, Workspace};
 use crate::viewer::state::State;
 
@@ -43,6 +43,7 @@ pub(super) fn add(list: &mut List, state: &State) {
     let fold = if state.unfolded { "Fold the panel at the right" } else { "Unfold the panel at the right" };
     list.add(fold, Command::Unfold(!state.unfolded)).if_possible(state.folds && !state.presenting);
     list.add("Reset layout", Command::ResetLayout);
+    list.add("Settings", Command::Preferences(!state.preferences)).key(PREFERENCES);
     list.add("All commands", Command::Palette(true)).key(PALETTE);
     let help = list.add("Keys and mouse", Command::Help(!state.help));
     help.keys.extend(HELP);

@@ -2,16 +2,15 @@
 
 use eframe::egui::{self, Align, Key, KeyboardShortcut, Layout, MenuBar, Modifiers, Ui};
 
-use super::Commands;
+use super::{Commands, preferences};
 use crate::scene::builtin;
 use crate::viewer::actions::{
-    self, BOOKMARK, CAMERA_BACK, CAMERA_FORWARD, FRAME_ALL, FULL_SCREEN, LARGER, OPEN, OPEN_PATH, PALETTE, PRESENT, PROJECTION,
-    QUIT, REDO, SAME_SIZE, SAVE, SMALLER, UNDO, key_of, scaled,
+    self, BOOKMARK, CAMERA_BACK, CAMERA_FORWARD, FRAME_ALL, FULL_SCREEN, LARGER, OPEN, OPEN_PATH, PALETTE, PREFERENCES, PRESENT,
+    PROJECTION, QUIT, REDO, SAME_SIZE, SAVE, SMALLER, UNDO, key_of, scaled,
 };
 use crate::viewer::command::Command;
 use crate::viewer::exports::Export;
-use crate::viewer::format;
-use crate::viewer::settings::{Navigation, ThemeChoice, Workspace};
+use crate::viewer::settings::Workspace;
 use crate::viewer::state::State;
 
 /// Draws the bar.
@@ -76,6 +75,7 @@ fn escape(ctx: &egui::Context, state: &State, commands: &mut Commands) {
         (state.palette, Command::Palette(false)),
         (state.help, Command::Help(false)),
         (state.terms, Command::Terms(false)),
+        (state.preferences, Command::Preferences(false)),
         (state.asking.is_some(), Command::AskForPath(false)),
     ];
     let running = actions::running(state).into_iter().map(|(on, _, command)| (on, command));
@@ -182,6 +182,10 @@ fn edit(ui: &mut Ui, state: &State, commands: &mut Commands) {
     if item_if(ui, state.can_redo(), "Redo", &REDO) {
         commands.push(Command::Redo);
     }
+    ui.separator();
+    if item(ui, "Settings…", &PREFERENCES) {
+        commands.push(Command::Preferences(true));
+    }
 }
 
 fn view(ui: &mut Ui, state: &State, commands: &mut Commands) {
@@ -198,24 +202,9 @@ fn view(ui: &mut Ui, state: &State, commands: &mut Commands) {
         commands.push(Command::CameraForward);
     }
     bookmarks(ui, state, commands);
-    ui.menu_button("Samples a pixel", |ui| {
-        for samples in [1, 16, 64, 256, 1024, 4096] {
-            if ui.radio(state.settings.max_samples == samples, samples.to_string()).clicked() {
-                commands.push(Command::MaxSamples(samples));
-            }
-        }
-    });
-    ui.menu_button("Memory", |ui| memory(ui, state, commands));
-    ui.menu_button("Mouse", |ui| {
-        for (choice, text) in [
-            (Navigation::Standard, "Left orbits, middle pans"),
-            (Navigation::Blender, "Blender: middle orbits, Shift+middle pans"),
-        ] {
-            if ui.radio(state.settings.navigation == choice, text).clicked() {
-                commands.push(Command::Navigation(choice));
-            }
-        }
-    });
+    ui.menu_button("Samples a pixel", |ui| preferences::samples(ui, state, commands));
+    ui.menu_button("Memory", |ui| preferences::memory(ui, state, commands));
+    ui.menu_button("Mouse", |ui| preferences::mouse(ui, state, commands));
 }
 
 /// Views that were kept.
@@ -238,33 +227,8 @@ fn bookmarks(ui: &mut Ui, state: &State, commands: &mut Commands) {
     });
 }
 
-/// How much the work may take. Structures that are kept go first where it is less than is held.
-fn memory(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    let (used, limit) = state.memory();
-    super::empty(ui, &format!("{} of {} in use", format::bytes(used), format::bytes(limit)));
-    let chosen = state.settings.memory_mib;
-    if ui.radio(chosen.is_none(), "Half of the machine").clicked() {
-        commands.push(Command::Memory(None));
-    }
-    for gib in memory_sizes(state) {
-        if ui.radio(chosen == Some(gib << 10), format::bytes(gib << 30)).clicked() {
-            commands.push(Command::Memory(Some(gib << 10)));
-        }
-    }
-}
-
-/// Sizes of the budget that this machine has, in GiB.
-pub fn memory_sizes(state: &State) -> impl Iterator<Item = u64> {
-    let most = state.machine_bytes;
-    [1, 2, 4, 8, 16, 32, 64, 128].into_iter().filter(move |gib| gib << 30 <= most)
-}
-
 fn window(ui: &mut Ui, state: &State, commands: &mut Commands) {
-    for (choice, text) in [(ThemeChoice::System, "As the system"), (ThemeChoice::Light, "Light"), (ThemeChoice::Dark, "Dark")] {
-        if ui.radio(state.settings.theme == choice, text).clicked() {
-            commands.push(Command::Theme(choice));
-        }
-    }
+    preferences::look(ui, state, commands);
     ui.separator();
     let scale = state.settings.scale;
     if item(ui, "Larger", &LARGER) {

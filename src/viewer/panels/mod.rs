@@ -32,6 +32,7 @@ pub mod panes;
 pub mod path;
 pub mod predicted;
 pub mod prediction;
+pub mod preferences;
 pub mod ray;
 pub mod ray_list;
 pub mod saves;

@@ -146,6 +146,7 @@ impl State {
             Command::Scale(scale) => self.settings.scale = scale,
             Command::Palette(open) => self.palette = open,
             Command::Help(open) => self.help = open,
+            Command::Preferences(open) => self.preferences = open,
             Command::Terms(open) => self.terms = open,
             Command::Tour(step) => self.go_on_tour(step),
             Command::Present(present) => self.presenting = present,

@@ -170,6 +170,8 @@ pub struct State {
     pub palette: bool,
     /// The page of keys is open.
     pub help: bool,
+    /// The page of settings is open.
+    pub preferences: bool,
     /// The page of terms is open.
     pub terms: bool,
     /// How far somebody is on the tour, if anybody is.
@@ -310,6 +312,7 @@ impl State {
             asking: None,
             palette: false,
             help: false,
+            preferences: false,
             terms: false,
             tour: None,
             presenting: false,
