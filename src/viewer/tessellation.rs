@@ -47,7 +47,8 @@ impl Plugin for Again {
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
     use super::*;
-    use eframe::egui::{Color32, Pos2, RawInput, Shape, Stroke, Ui};
+    use crate::viewer::theme;
+    use eframe::egui::{Pos2, RawInput, Shape, Stroke, Ui};
 
     #[test]
     fn what_is_drawn_is_tessellated_and_told_once() {
@@ -55,7 +56,7 @@ mod tests {
         let taken = Tessellation::watch(&ctx);
         let curve: Vec<Pos2> = (0..10_000).map(|i| Pos2::new(i as f32, (i % 100) as f32)).collect();
         let mut output = ctx.run_ui(RawInput::default(), |ui: &mut Ui| {
-            ui.painter().add(Shape::line(curve.clone(), Stroke::new(1.0, Color32::WHITE)));
+            ui.painter().add(Shape::line(curve.clone(), Stroke::new(1.0, theme::TRIED)));
         });
         // Nobody is there to take the font.
         output.textures_delta.clear();
