@@ -69,7 +69,7 @@ pub struct BruteCheck {
     pub one_sided: u64,
     /// The greatest difference of t where both find something, in units of the rays' directions.
     pub largest: f32,
-    /// Some of those that differ, at most [`MOST`], row by row.
+    /// Some of those that differ, at most `MOST`, row by row.
     pub examples: Vec<UnlikePixel>,
     /// Seconds that it took.
     pub secs: f64,

@@ -1,5 +1,5 @@
-//! How a structure came to be, as a film: [`replay`] the cells that were divided or merged, from what the tree is at last; then,
-//! where nodes were moved once the tree was built, [`moves`], round by round and by gain, for which the tree is built once more.
+//! How a structure came to be, as a film: `replay` the cells that were divided or merged, from what the tree is at last; then,
+//! where nodes were moved once the tree was built, `moves`, round by round and by gain, for which the tree is built once more.
 
 mod moves;
 mod replay;
