@@ -5,7 +5,8 @@
 #
 # They are taken of the release build, in the folder that this script lies in. Pictures of a room are taken only if a model of
 # one is named (bathroom2 of Bitterli's rendering resources, https://benedikt-bitterli.me/resources/). Needs a display and a driver for
-# graphics (`xvfb-run -s '-screen 0 3840x2160x24' screenshots/take.sh` will do), and for the animation ImageMagick.
+# graphics (`xvfb-run -s '-noreset -screen 0 3840x2160x24' screenshots/take.sh` will do), and for the animation ImageMagick. What the
+# pointer is over is told: it had better stand outside of the window.
 set -euo pipefail
 [ $# -eq 0 ] || set -- "$(realpath "$1")"
 cd "$(dirname "$0")/.."
