@@ -272,6 +272,10 @@ fn pages_fit_small_windows() {
         w.key(Modifiers::COMMAND, egui::Key::Comma);
         w.step();
         let page = w.harness.get_by_role_and_label(egui::Role::Window, "Settings").rect();
+        let most = w.harness.get_by_role_and_label(egui::Role::RadioButton, "4096").rect();
+        if most.height() > 1.5 * theme::ROW || most.width() < 1.5 * theme::ROW {
+            wrong.push(format!("{}: words of the page of settings are broken: {most}", case.name));
+        }
         if !w.harness.ctx.content_rect().contains_rect(page) {
             wrong.push(format!("{}: the page of settings is too large: {page}", case.name));
         }

@@ -22,6 +22,8 @@ pub fn show(ui: &Ui, state: &State, commands: &mut Commands) {
     let mut open = true;
     let page = egui::Window::new("Settings").open(&mut open).collapsible(false).resizable(false);
     page.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ui.ctx(), |ui| {
+        // The page is as wide as its words.
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
                 heading(ui, "Look");
@@ -33,12 +35,12 @@ pub fn show(ui: &Ui, state: &State, commands: &mut Commands) {
                 heading(ui, "Mouse");
                 mouse(ui, state, commands);
             });
-            ui.separator();
+            ui.add_space(2.0 * theme::GUTTER);
             ui.vertical(|ui| {
                 heading(ui, "Memory");
                 memory(ui, state, commands);
             });
-            ui.separator();
+            ui.add_space(2.0 * theme::GUTTER);
             ui.vertical(|ui| {
                 heading(ui, "Samples a pixel");
                 samples(ui, state, commands);
