@@ -138,6 +138,8 @@ fn making_it_is_stopped_and_many_cells_are_told_by_level() {
     assert!(film.last() < 100 && film.tell(2).starts_with("Level 2 of "), "too many to be told one by one");
 }
 
+const MOVED: &str = "White: what was moved. Orange: its parent before, which is gone. Blue: its parent since.";
+
 #[test]
 fn nodes_that_reinsertion_moved_are_shown_with_their_parents() {
     let mut w = open("builtin:soup?triangles=200");
@@ -161,8 +163,10 @@ fn nodes_that_reinsertion_moved_are_shown_with_their_parents() {
     w.button("Back");
     assert_eq!(drawn(&mut w), (1, 3), "the root, what was moved and its two parents");
     assert!(w.says(&film.tell(film.last() - 1)) && film.tell(film.last() - 1).starts_with("Reinsertion "));
-    assert!(w.says("Moves by round and gain"));
+    assert!(w.says("Moves by gain"));
+    let [plot, said] = [(Role::Image, "SAH cost over the film"), (Role::Label, MOVED)]
+        .map(|(role, name)| w.harness.get_by_role_and_label(role, name).rect());
+    assert!(said.bottom() <= plot.bottom(), "all of it is seen: {said} in {plot}");
     let colors: Vec<[u8; 4]> = w.state().overlay.as_ref().expect("collected").lit.iter().map(|lit| lit.color).collect();
     assert!(colors[0] != colors[1] && colors[1] != colors[2] && colors[2] == [255; 4], "{colors:?}");
-    assert!(w.says("White: what was moved. Orange: its parent before, which is gone. Blue: its parent since."));
 }

@@ -177,7 +177,7 @@ impl Film {
     /// What is to be said of the order at a position: of moves it is the one in which they were made.
     pub fn order_at(&self, at: u32) -> &'static str {
         match self.seen(at) {
-            Seen::Moves(..) => "Moves by round and gain",
+            Seen::Moves(..) => "Moves by gain",
             Seen::Cells(..) | Seen::Finished(_) => "Reconstructed order",
         }
     }
