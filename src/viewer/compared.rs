@@ -126,8 +126,7 @@ fn each(state: &State) -> &'static str {
 
 /// What the colours of a difference stand for.
 fn less(state: &State, which: usize, picture: &Picture) -> Heat {
-    let first = state.shown.as_ref().map_or_else(|| state.settings.entry(), |shown| shown.key.entry);
-    let (a, b) = (first.short, state.settings.panes.others[which].entry().short);
+    let [a, b] = [0, which + 1].map(|place| entries(state).nth(place).map_or("", |entry| entry.short));
     let letter = LETTERS[which + 1];
     let [a, b] = if a == b { [LETTERS[0], letter] } else { [a, b] };
     let size = format::number(picture.range.max.into());

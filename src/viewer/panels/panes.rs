@@ -7,7 +7,7 @@ use super::{Commands, captions, empty, structure};
 use crate::accel::registry;
 use crate::render::Mode;
 use crate::viewer::command::Command;
-use crate::viewer::compared::{Told, facts, heats, names, told_at, told_of_click};
+use crate::viewer::compared::{Told, entries, facts, heats, names, told_at, told_of_click};
 use crate::viewer::legends;
 use crate::viewer::marks;
 use crate::viewer::panes::{Arrange, LETTERS, PaneChoice, Shows};
@@ -174,9 +174,7 @@ fn tune(ui: &Ui, places: &[Place], state: &State, commands: &mut Commands) {
 
 /// The names of strips, on them.
 fn plates(ui: &Ui, places: &[Place], state: &State) {
-    let first = state.shown.as_ref().map_or_else(|| state.settings.entry(), |shown| shown.key.entry);
-    let others = state.settings.panes.on_screen().iter().map(PaneChoice::entry);
-    for ((entry, place), letter) in std::iter::once(first).chain(others).zip(places).zip(LETTERS) {
+    for ((entry, place), letter) in entries(state).zip(places).zip(LETTERS) {
         if place.seen.width() >= NAMED {
             let inner = place.seen.shrink(theme::GUTTER);
             captions::plate(ui, inner.left_top(), Align2::LEFT_TOP, format!("{letter}: {}", entry.short));
